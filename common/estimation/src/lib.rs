@@ -1,0 +1,1 @@
+//! The mathematics of deck deformation, without clock, file, thread or transport.

@@ -1,0 +1,47 @@
+bitflags::bitflags! {
+    /// What a sample, a pair or a solution has to say about itself. The names are those of the solution files.
+    #[repr(transparent)]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    pub struct Flags: u32 {
+        /// The sub unit's attitude was interpolated onto the main unit's instant.
+        const INTERPOLATED = 1 << 0;
+        /// A few lost samples inside the interval were bridged by interpolation.
+        const BRIDGED = 1 << 1;
+        /// The data of at least one unit are missing at this instant.
+        const GAP = 1 << 2;
+        /// The sub unit has been silent for longer than `silence_s` of main data.
+        const SILENT = 1 << 3;
+        /// A channel was NaN or infinite; its sample counts as lost.
+        const NOT_FINITE = 1 << 4;
+        /// A channel was at the end of its measuring range.
+        const SATURATED = 1 << 5;
+        /// A gyro's channels have not changed by a bit for too long.
+        const STUCK = 1 << 6;
+        /// The unit's clock jumped back.
+        const TIME_BACK = 1 << 7;
+        /// The accumulated attitudes start anew with this pair.
+        const NEW_EPOCH = 1 << 8;
+        /// The installation is still being registered: no solution yet.
+        const REGISTERING = 1 << 9;
+        /// The motion does not show the installation on every axis.
+        const UNOBSERVABLE = 1 << 10;
+        /// The filter started from the configured installation, not from the motion.
+        const INSTALLATION = 1 << 11;
+        /// The flexure parameters in use are a broad guess, not identified.
+        const PRIOR = 1 << 12;
+        /// Parameters arrived after the time at which they should have taken effect.
+        const LATE = 1 << 13;
+        /// The output is a prediction: no data came in at this instant.
+        const COASTING = 1 << 14;
+        /// The filter met numbers that it could not use and started anew.
+        const RESET = 1 << 15;
+    }
+}
+
+impl Flags {
+    /// The names of the flags that are set, lower case, joined by `|`.
+    pub fn names(self) -> String {
+        let names: Vec<String> = self.iter_names().map(|(name, _)| name.to_lowercase()).collect();
+        names.join("|")
+    }
+}

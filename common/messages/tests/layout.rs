@@ -1,0 +1,44 @@
+//! The layouts that other processes, and other languages, rely on. Whoever changes a line here changes the version in the
+//! message's type name too.
+
+use messages::*;
+use std::mem::{offset_of, size_of};
+
+macro_rules! layout {
+    ($type:ty, $name:literal, $size:literal, $($field:ident @ $offset:literal),*) => {
+        assert_eq!(<$type as Message>::TYPE_NAME, $name);
+        assert_eq!(size_of::<$type>(), $size, "size of {}", $name);
+        $(assert_eq!(offset_of!($type, $field), $offset, "{}.{}", $name, stringify!($field));)*
+    };
+}
+
+#[test]
+fn layouts_are_as_published() {
+    assert_eq!(size_of::<Stamps>(), 48);
+    assert_eq!(size_of::<Header>(), 80);
+    layout!(ImuSample, "deckflex/ImuSample/1", 144, header @ 0, interval_ns @ 80, dtheta @ 88, dvel @ 112, flags @ 136, unit @ 140);
+    layout!(MainAttitude, "deckflex/MainAttitude/1", 136, q @ 80, sigma @ 112);
+    layout!(ImuPair, "deckflex/ImuPair/1", 320, epoch @ 80, interval_ns @ 88, dtheta_m @ 96, dtheta_s @ 144, attitude_m @ 192,
+        attitude_s @ 224, ins @ 256, ins_sigma @ 288, area @ 312, flags @ 316);
+    layout!(FlexureParams, "deckflex/FlexureParams/1", 256, id @ 80, window_begin_ns @ 88, effective_from_ns @ 96, mu @ 104,
+        b @ 128, sigma @ 152, ln_sigma_sd @ 224, points @ 248, area @ 252);
+    layout!(Solution, "deckflex/Solution/1", 600, params_id @ 80, epoch @ 88, q @ 96, static_q @ 128, constant @ 160, phi @ 192,
+        dynamic @ 216, rate @ 240, drift @ 264, covariance @ 288, static_covariance @ 360, dynamic_covariance @ 432, range @ 504,
+        deck @ 528, deck_sigma @ 560, area @ 584, valid @ 588, flags @ 592);
+    layout!(Truth, "deckflex/Truth/1", 208, q @ 80, static_q @ 112, dynamic @ 144, ship @ 168, area @ 200);
+    layout!(Health, "deckflex/Health/1", 176, taken @ 80, late @ 136, stage @ 152, pid @ 168);
+}
+
+#[test]
+fn flags_have_the_names_of_the_files() {
+    assert_eq!((Flags::GAP | Flags::NEW_EPOCH).names(), "gap|new_epoch");
+    assert_eq!(Flags::default().names(), "");
+}
+
+#[test]
+fn codes_come_back() {
+    for stage in [Stage::Simulate, Stage::Replay, Stage::Synchronise, Stage::Estimate, Stage::Identify] {
+        assert_eq!(Stage::from_code(stage as u32), Some(stage));
+    }
+    assert_eq!(State::from_code(99), None);
+}

@@ -1,0 +1,1 @@
+//! Configuration, data sources and the offline loop.

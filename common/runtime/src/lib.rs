@@ -1,0 +1,1 @@
+//! The shell: transport, clocks, scheduling and latency.

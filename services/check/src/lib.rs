@@ -1,0 +1,1 @@
+//! Checks a configuration and the head of each recording.

@@ -1,0 +1,1 @@
+//! Parameter identification as a process.

@@ -1,0 +1,3 @@
+//! deckflex: deck deformation of a ship from two or more inertial units.
+
+fn main() {}

@@ -1,0 +1,1 @@
+//! The offline loop over a configuration.

@@ -1,0 +1,1 @@
+//! Recorded units as a process.
