@@ -1,1 +1,23 @@
-//! The mathematics of deck deformation, without clock, file, thread or transport.
+//! The mathematics of deck deformation: pure steps without clock, file, thread, log or transport.
+//!
+//! Samples of two units go through [`synchronise`], which gives pairs; an [`Estimator`] turns each pair into a solution; an
+//! [`Identifier`] learns the flexure model from pairs and solutions at its own slow rate.
+
+pub mod flexure;
+pub mod identify;
+
+use messages::{FlexureParams, ImuPair, Solution};
+
+/// The fast stage: one solution a pair.
+pub trait Estimator {
+    /// Offers a parameter set; it takes effect with the first pair at or after its `effective_from_ns`.
+    fn offer(&mut self, params: FlexureParams);
+    /// Handles one pair.
+    fn step(&mut self, pair: &ImuPair) -> Solution;
+}
+
+/// The slow stage: now and then a parameter set.
+pub trait Identifier {
+    /// Takes a pair with the solution of the same sample number.
+    fn step(&mut self, pair: &ImuPair, solution: &Solution) -> Option<FlexureParams>;
+}

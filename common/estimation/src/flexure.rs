@@ -1,0 +1,130 @@
+//! Second-order Gauss-Markov flexure of one axis.
+//!
+//! Source: paper 000 eq 3 and paper 001 eq 28, with the driving density that follows from the stationary variance:
+//! `x'' + 2 mu x' + b^2 x = w`, density of w `Q = 4 mu b^2 sigma^2`, for any damping (`mu < b` oscillates, `mu = b` is critical).
+
+use nalgebra::{Matrix2, Vector2};
+
+/// The model of one axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Flexure {
+    /// Damping, 1/s.
+    pub mu: f64,
+    /// Natural frequency, rad/s.
+    pub b: f64,
+    /// Standard deviation, rad.
+    pub sigma: f64,
+}
+
+impl Flexure {
+    /// Density of the driving noise, rad^2/s^3.
+    pub fn density(&self) -> f64 {
+        4.0 * self.mu * self.b * self.b * self.sigma * self.sigma
+    }
+
+    /// Stationary covariance of angle and rate.
+    pub fn stationary(&self) -> Matrix2<f64> {
+        let variance = self.sigma * self.sigma;
+        Matrix2::from_diagonal(&Vector2::new(variance, self.b * self.b * variance))
+    }
+
+    /// Cosine- and sine-like solutions `(c, s)` after the time `t`, with `s' = c`-like scaling `s = sin(l t) / l`.
+    fn modes(&self, t: f64) -> (f64, f64) {
+        let k = self.b * self.b - self.mu * self.mu;
+        let square = k * t * t;
+        if square.abs() < 1e-6 {
+            (1.0 - square / 2.0 + square * square / 24.0, t * (1.0 - square / 6.0 + square * square / 120.0))
+        } else if k > 0.0 {
+            let l = k.sqrt();
+            ((l * t).cos(), (l * t).sin() / l)
+        } else {
+            let l = (-k).sqrt();
+            ((l * t).cosh(), (l * t).sinh() / l)
+        }
+    }
+
+    /// Exact transition of `[angle, rate]` over the time `t`.
+    pub fn transition(&self, t: f64) -> Matrix2<f64> {
+        let (c, s) = self.modes(t);
+        let (mu, b2) = (self.mu, self.b * self.b);
+        Matrix2::new(c + mu * s, s, -b2 * s, c - mu * s) * (-mu * t).exp()
+    }
+
+    /// Exact covariance of what the driving noise adds over the time `t`: `P - F P F^T`.
+    pub fn noise(&self, t: f64) -> Matrix2<f64> {
+        let p = self.stationary();
+        let f = self.transition(t);
+        p - f * p * f.transpose()
+    }
+
+    /// Autocovariance at the lag `tau >= 0`: paper 000 eq 17 with the factor the right way up, `R(0) = sigma^2`.
+    pub fn autocovariance(&self, tau: f64) -> f64 {
+        let (c, s) = self.modes(tau);
+        self.sigma * self.sigma * (-self.mu * tau).exp() * (c + self.mu * s)
+    }
+
+    /// Two-sided spectral density at the angular frequency `w`, rad^2 s.
+    pub fn spectrum(&self, w: f64) -> f64 {
+        let d = self.b * self.b - w * w;
+        self.density() / (d * d + 4.0 * self.mu * self.mu * w * w)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CASES: [Flexure; 4] = [
+        Flexure { mu: 0.2146, b: 0.2146, sigma: 1.7e-3 },
+        Flexure { mu: 0.1, b: 0.6, sigma: 1e-3 },
+        Flexure { mu: 0.8, b: 0.3, sigma: 2e-3 },
+        Flexure { mu: 0.15, b: 1.2566, sigma: 1e-5 },
+    ];
+
+    #[test]
+    fn transition_solves_the_differential_equation() {
+        for m in CASES {
+            let a = Matrix2::new(0.0, 1.0, -m.b * m.b, -2.0 * m.mu);
+            for t in [1e-3, 0.01, 0.1, 1.0, 20.0] {
+                assert!((m.transition(t) - (a * t).exp()).norm() < 1e-12 * (1.0 + m.transition(t).norm()), "{m:?} {t}");
+            }
+        }
+    }
+
+    #[test]
+    fn stationary_covariance_solves_lyapunov() {
+        for m in CASES {
+            let a = Matrix2::new(0.0, 1.0, -m.b * m.b, -2.0 * m.mu);
+            let q = Matrix2::new(0.0, 0.0, 0.0, m.density());
+            let p = m.stationary();
+            assert!((a * p + p * a.transpose() + q).norm() < 1e-14 * q.norm().max(p.norm()));
+        }
+    }
+
+    #[test]
+    fn noise_is_the_integral_of_the_driving_noise() {
+        for m in CASES {
+            let (t, n) = (0.1, 2000);
+            let mut sum = Matrix2::zeros();
+            for i in 0..n {
+                let f = m.transition((i as f64 + 0.5) * t / n as f64);
+                let g = f.column(1) * f.column(1).transpose();
+                sum += g * (m.density() * t / n as f64);
+            }
+            assert!((m.noise(t) - sum).norm() < 1e-6 * sum.norm(), "{m:?}");
+        }
+    }
+
+    #[test]
+    fn autocovariance_is_the_transform_of_the_spectrum() {
+        for m in CASES {
+            for tau in [0.0, 0.5, 3.0, 12.0] {
+                let (n, top) = (400_000, 200.0);
+                let h = top / n as f64;
+                let sum: f64 = (0..n).map(|i| (i as f64 + 0.5) * h).map(|w| m.spectrum(w) * (w * tau).cos()).sum();
+                let integral = sum * h / std::f64::consts::PI;
+                assert!((integral - m.autocovariance(tau)).abs() < 1e-5 * m.sigma * m.sigma, "{m:?} {tau}");
+            }
+        }
+    }
+}
