@@ -3,8 +3,13 @@
 //! Samples of two units go through [`synchronise`], which gives pairs; an [`Estimator`] turns each pair into a solution; an
 //! [`Identifier`] learns the flexure model from pairs and solutions at its own slow rate.
 
+pub mod align;
+pub mod estimator;
+pub mod filter;
 pub mod flexure;
 pub mod identify;
+pub mod matching;
+pub mod synchronise;
 
 use messages::{FlexureParams, ImuPair, Solution};
 

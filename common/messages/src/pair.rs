@@ -8,7 +8,7 @@ use crate::{Flags, Header, message};
 pub struct ImuPair {
     /// `sequence` and `time_ns` are the main unit's.
     pub header: Header,
-    /// The main sample number at which the accumulated attitudes were the identity.
+    /// The main sample number at which the accumulated attitudes start.
     pub epoch: u64,
     /// The interval of the increments: since the main unit's previous sample.
     pub interval_ns: i64,
@@ -28,6 +28,9 @@ pub struct ImuPair {
     pub ins: [f64; 4],
     /// Standard deviation of `ins` about east, north, up, rad.
     pub ins_sigma: [f64; 3],
+    /// Standard deviation, per axis, of the angle error that entered the accumulated attitudes with this pair beyond the units'
+    /// noise, because samples were bridged or at the end of their range; rad.
+    pub disturbance: f64,
     /// Index of the area.
     pub area: u32,
     /// What happened to the data of this pair.

@@ -18,8 +18,8 @@ fn layouts_are_as_published() {
     assert_eq!(size_of::<Header>(), 80);
     layout!(ImuSample, "deckflex/ImuSample/1", 144, header @ 0, interval_ns @ 80, dtheta @ 88, dvel @ 112, flags @ 136, unit @ 140);
     layout!(MainAttitude, "deckflex/MainAttitude/1", 136, q @ 80, sigma @ 112);
-    layout!(ImuPair, "deckflex/ImuPair/1", 320, epoch @ 80, interval_ns @ 88, dtheta_m @ 96, dtheta_s @ 144, attitude_m @ 192,
-        attitude_s @ 224, ins @ 256, ins_sigma @ 288, area @ 312, flags @ 316);
+    layout!(ImuPair, "deckflex/ImuPair/1", 328, epoch @ 80, interval_ns @ 88, dtheta_m @ 96, dtheta_s @ 144, attitude_m @ 192,
+        attitude_s @ 224, ins @ 256, ins_sigma @ 288, disturbance @ 312, area @ 320, flags @ 324);
     layout!(FlexureParams, "deckflex/FlexureParams/1", 256, id @ 80, window_begin_ns @ 88, effective_from_ns @ 96, mu @ 104,
         b @ 128, sigma @ 152, ln_sigma_sd @ 224, points @ 248, area @ 252);
     layout!(Solution, "deckflex/Solution/1", 600, params_id @ 80, epoch @ 88, q @ 96, static_q @ 128, constant @ 160, phi @ 192,

@@ -1,0 +1,139 @@
+//! Coarse registration of the installation from the motion alone, at any angle.
+//!
+//! Source: paper 001 eqs 2-8 in windowed form: the angle increments of both units over short windows, `a = C_s^m b + c`, solved
+//! for the rotation in closed form (Davenport's problem, by singular values) after the means are taken out, so that a constant relative
+//! gyro bias `c` does no harm. The literal cumulative form of the paper grows worse with time.
+
+use frames::{Main, Rot, Sub, Vec3, unit};
+use messages::{Flags, ImuPair};
+use nalgebra::{Matrix3, Vector3};
+
+/// Length of a window, s; they overlap by half.
+const WINDOW_S: f64 = 1.0;
+/// The residuals of half-overlapping windows of a flexing hull are not independent: their variance counts so much more.
+const CORRELATION: f64 = 4.0;
+/// Least number of windows before a solution is tried.
+const LEAST_WINDOWS: f64 = 8.0;
+/// Least ratio of the second to the first singular value: below, the motion has one axis only.
+const LEAST_RATIO: f64 = 1e-3;
+/// Largest standard deviation of a registered axis.
+const LARGEST_SIGMA: f64 = 2.0 * unit::DEGREE;
+
+/// A registered installation.
+#[derive(Clone, Copy, Debug)]
+pub struct Registration {
+    /// `C_s^m`, averaged over the windows.
+    pub rotation: Rot<Main, Sub>,
+    /// Covariance of its error, rad^2, in m.
+    pub covariance: Matrix3<f64>,
+    /// Relative gyro bias, rad/s, in m.
+    pub bias: Vec3<Main>,
+    /// Its standard deviation per axis, rad/s.
+    pub bias_sigma: Vector3<f64>,
+    /// Standard deviation of the relative rate that the constant rotation leaves, per axis, rad/s.
+    pub residual_rate: Vector3<f64>,
+    /// Ratio of the second to the first singular value of the matching matrix.
+    pub ratio: f64,
+}
+
+impl Registration {
+    /// Whether the motion shows the installation on every axis.
+    pub fn is_observable(&self) -> bool {
+        self.ratio >= LEAST_RATIO && self.largest_sigma() <= LARGEST_SIGMA
+    }
+
+    /// The largest standard deviation of an axis, rad.
+    pub fn largest_sigma(&self) -> f64 {
+        self.covariance.diagonal().max().sqrt()
+    }
+}
+
+/// Collects windows of both units' angle increments.
+#[derive(Clone, Debug, Default)]
+pub struct Registrar {
+    halves: Halves,
+    windows: f64,
+    length_s: f64,
+    sum_a: Vector3<f64>,
+    sum_b: Vector3<f64>,
+    sum_aa: Matrix3<f64>,
+    sum_ab: Matrix3<f64>,
+    sum_bb: Matrix3<f64>,
+}
+
+/// The half window that is being filled and the one before it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Halves {
+    before: Option<Half>,
+    now: Half,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Half {
+    a: Vector3<f64>,
+    b: Vector3<f64>,
+    length_s: f64,
+}
+
+impl Registrar {
+    /// Takes the increments of a pair.
+    pub fn add(&mut self, pair: &ImuPair) {
+        if pair.flags.intersects(Flags::GAP | Flags::NEW_EPOCH | Flags::SATURATED) {
+            self.halves = Halves::default();
+            return;
+        }
+        let now = &mut self.halves.now;
+        now.a += Vec3::<Main>::from(pair.dtheta_m).column();
+        now.b += Vec3::<Sub>::from(pair.dtheta_s).column();
+        now.length_s += unit::seconds(pair.interval_ns);
+        if now.length_s < 0.5 * WINDOW_S - 0.5 * unit::seconds(pair.interval_ns) {
+            return;
+        }
+        let now = self.halves.now;
+        if let Some(before) = self.halves.before {
+            self.window(before.a + now.a, before.b + now.b, before.length_s + now.length_s);
+        }
+        self.halves = Halves { before: Some(now), now: Half::default() };
+    }
+
+    fn window(&mut self, a: Vector3<f64>, b: Vector3<f64>, length_s: f64) {
+        self.windows += 1.0;
+        self.length_s += length_s;
+        self.sum_a += a;
+        self.sum_b += b;
+        self.sum_aa += a * a.transpose();
+        self.sum_ab += a * b.transpose();
+        self.sum_bb += b * b.transpose();
+    }
+
+    /// The registration so far; `None` with too few windows or without motion.
+    pub fn solve(&self) -> Option<Registration> {
+        let n = self.windows;
+        if n < LEAST_WINDOWS {
+            return None;
+        }
+        let aa = self.sum_aa - self.sum_a * self.sum_a.transpose() / n;
+        let ab = self.sum_ab - self.sum_a * self.sum_b.transpose() / n;
+        let bb = self.sum_bb - self.sum_b * self.sum_b.transpose() / n;
+        let svd = ab.try_svd(true, true, f64::EPSILON, 100)?;
+        let (u, v_t) = (svd.u?, svd.v_t?);
+        let sign = (u.determinant() * v_t.determinant()).signum();
+        let c = u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v_t;
+        let residual = aa - c * ab.transpose() - ab * c.transpose() + c * bb * c.transpose();
+        let freedom = 3.0 * n - 6.0;
+        let variance = (residual.trace() / freedom).max(f64::MIN_POSITIVE);
+        let information = Matrix3::identity() * aa.trace() - aa;
+        let covariance = information.try_inverse()? * (variance * CORRELATION);
+        let finite = covariance.iter().chain(c.iter()).all(|x| x.is_finite());
+        let length_s = self.length_s / n;
+        let rate_variance = residual.diagonal().map(|r| r.max(0.0) / (n - 2.0)) / (length_s * length_s);
+        (finite && covariance.diagonal().min() > 0.0).then(|| Registration {
+            rotation: Rot::from_matrix(&c),
+            covariance,
+            bias: Vec3::from_column((self.sum_a - c * self.sum_b) / self.length_s),
+            bias_sigma: (rate_variance * (CORRELATION / n)).map(f64::sqrt),
+            residual_rate: rate_variance.map(f64::sqrt),
+            ratio: svd.singular_values[1] / svd.singular_values[0].max(f64::MIN_POSITIVE),
+        })
+    }
+}

@@ -1,0 +1,355 @@
+//! The fast stage: registration by motion, then the filter of [`crate::matching::so3`], with an output at every pair.
+
+use crate::Estimator;
+use crate::align::{Registrar, Registration};
+use crate::filter::{Kalman, Update, symmetrise};
+use crate::flexure::Flexure;
+use crate::matching::Matching;
+use crate::matching::so3::{Covariance, Grade, Increment, So3, place};
+use frames::{Main, MainStart, Nav, Rot, Sub, Vec3, unit};
+use messages::{Flags, FlexureParams, ImuPair, Solution};
+use nalgebra::{Matrix3, Vector3};
+use std::collections::VecDeque;
+
+/// A surveyed installation to fall back to.
+#[derive(Clone, Copy, Debug)]
+pub struct Installation {
+    /// `C_s^m`.
+    pub rotation: Rot<Main, Sub>,
+    /// Standard deviation of its error about each axis, rad.
+    pub sigma: f64,
+}
+
+/// Settings of the estimator of one area.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Index of the area.
+    pub area: u32,
+    /// Figures of both units, and how restless the static part is.
+    pub grade: Grade,
+    /// Nominal sampling interval, s.
+    pub interval_s: f64,
+    /// Rate of the filter, Hz; the output comes at every pair all the same.
+    pub filter_hz: f64,
+    /// How long to wait for the motion to show the installation before the surveyed one is taken, s.
+    pub registration_s: f64,
+    /// The surveyed installation, if there is one.
+    pub installation: Option<Installation>,
+    /// A flexure model known beforehand; otherwise a broad guess is made at registration.
+    pub flexure: Option<[Flexure; 3]>,
+}
+
+/// Registration by motion takes at least so long, s.
+const LEAST_REGISTRATION_S: f64 = 5.0;
+/// A registration as good as this is not waited for any longer.
+const GOOD_REGISTRATION: f64 = 0.5 * unit::DEGREE;
+/// The registration's covariance is widened: its windows see the flexure as if it were noise.
+const REGISTRATION_DOUBT: f64 = 9.0;
+/// Standard deviation of the static part's rate at the start, rad/s.
+const STATIC_RATE_SIGMA: f64 = 0.5 * unit::ARCSEC;
+/// Gyro biases may exceed their specification.
+const BIAS_DOUBT: f64 = 3.0;
+/// The broad guess: damping and natural frequency, and how much wider than the residual rate the flexure may be.
+const GUESS: (f64, f64, f64) = (0.3, 0.6, 2.0);
+/// The least flexure of the broad guess.
+const LEAST_GUESS: f64 = 1.0 * unit::ARCSEC;
+/// The published range in standard deviations: 95 % of a normal error.
+const RANGE: f64 = 1.96;
+/// A covariance beyond this (1 rad^2) says nothing of a rotation any more.
+const LOST: f64 = 1.0;
+/// Parameter sets that wait for their time.
+const WAITING: usize = 8;
+
+/// The estimator of one area.
+#[derive(Clone, Debug)]
+pub struct So3Estimator {
+    settings: Settings,
+    phase: Phase,
+    /// Sets that wait for their time, in the order of it.
+    waiting: VecDeque<FlexureParams>,
+    /// The set in force.
+    params: Option<FlexureParams>,
+    last_ns: Option<i64>,
+    late: u64,
+    /// Flags that the next solution carries.
+    news: Flags,
+}
+
+#[derive(Clone, Debug)]
+enum Phase {
+    Registering { registrar: Box<Registrar>, since_ns: Option<i64> },
+    Running(Box<Running>),
+}
+
+/// The filter at work.
+#[derive(Clone, Debug)]
+struct Running {
+    so3: So3,
+    p: Covariance,
+    flags: Flags,
+    last_ns: Option<i64>,
+    good: Option<Good>,
+    /// Whether the last pair had no data.
+    coasting: bool,
+}
+
+/// The last pair that had data.
+#[derive(Clone, Copy, Debug)]
+struct Good {
+    epoch: u64,
+    time_ns: i64,
+    a_m: Rot<MainStart, Main>,
+}
+
+impl Phase {
+    fn registering() -> Self {
+        Self::Registering { registrar: Box::default(), since_ns: None }
+    }
+}
+
+impl So3Estimator {
+    /// An estimator that has seen nothing yet.
+    pub fn new(settings: Settings) -> Self {
+        Self {
+            settings,
+            phase: Phase::registering(),
+            waiting: VecDeque::with_capacity(WAITING),
+            params: None,
+            last_ns: None,
+            late: 0,
+            news: Flags::empty(),
+        }
+    }
+
+    /// How many parameter sets came after their time.
+    pub fn late(&self) -> u64 {
+        self.late
+    }
+
+    fn adopt(&mut self, time_ns: i64) {
+        while self.waiting.front().is_some_and(|params| params.effective_from_ns <= time_ns) {
+            self.params = self.waiting.pop_front();
+        }
+        if let (Some(params), Phase::Running(running)) = (&self.params, &mut self.phase) {
+            running.so3.set_flexure(model(params));
+        }
+    }
+
+    /// Collects motion until it shows the installation; then the filter starts with this pair.
+    fn register(&mut self, pair: &ImuPair) {
+        let Phase::Registering { registrar, since_ns } = &mut self.phase else { return };
+        let time_ns = pair.header.time_ns;
+        let waited_s = unit::seconds(time_ns - *since_ns.get_or_insert(time_ns));
+        registrar.add(pair);
+        if waited_s < LEAST_REGISTRATION_S || pair.flags.contains(Flags::GAP) {
+            return;
+        }
+        let found = registrar.solve().filter(Registration::is_observable);
+        let timed_out = waited_s >= self.settings.registration_s;
+        let running = match (found, self.settings.installation) {
+            (Some(found), _) if timed_out || found.largest_sigma() < GOOD_REGISTRATION => self.start(found, Flags::empty()),
+            (None, Some(installation)) if timed_out => {
+                let surveyed = Registration {
+                    rotation: installation.rotation,
+                    covariance: Matrix3::identity() * (installation.sigma.powi(2) / REGISTRATION_DOUBT),
+                    bias: Vec3::ZERO,
+                    bias_sigma: Vector3::from_element(f64::INFINITY),
+                    residual_rate: registrar.solve().map_or(Vector3::zeros(), |seen| seen.residual_rate),
+                    ratio: 0.0,
+                };
+                self.start(surveyed, Flags::INSTALLATION | Flags::UNOBSERVABLE)
+            }
+            (None, None) if timed_out => {
+                self.news |= Flags::UNOBSERVABLE;
+                return;
+            }
+            _ => return,
+        };
+        self.phase = Phase::Running(Box::new(running));
+        self.adopt(time_ns);
+    }
+
+    fn start(&self, from: Registration, flags: Flags) -> Running {
+        let grade = self.settings.grade;
+        let flexure = self.settings.flexure.unwrap_or_else(|| guess(&from.residual_rate));
+        let specified = (grade.main.bias.hypot(grade.sub.bias) * BIAS_DOUBT).powi(2);
+        let mut p = Covariance::zeros();
+        p.fixed_view_mut::<3, 3>(place::STATIC, place::STATIC).copy_from(&(from.covariance * REGISTRATION_DOUBT));
+        p.fixed_view_mut::<6, 6>(place::SCALE, place::SCALE).copy_from(&grade.scale_covariance(from.rotation));
+        let mut bias = Vector3::zeros();
+        for axis in 0..3 {
+            p[(place::STATIC_RATE + axis, place::STATIC_RATE + axis)] = STATIC_RATE_SIGMA.powi(2);
+            let stationary = flexure[axis].stationary();
+            p[(place::FLEXURE + axis, place::FLEXURE + axis)] = stationary[(0, 0)];
+            p[(place::FLEXURE_RATE + axis, place::FLEXURE_RATE + axis)] = stationary[(1, 1)];
+            // what the registration saw of the bias counts only where the specification is the wider one
+            let seen = from.bias_sigma[axis].powi(2) * REGISTRATION_DOUBT;
+            let trust = if seen.is_finite() { specified / (specified + seen) } else { 0.0 };
+            bias[axis] = trust * from.bias.array()[axis];
+            p[(place::BIAS + axis, place::BIAS + axis)] = specified * (1.0 - trust);
+        }
+        let so3 = So3::new(grade, flexure, from.rotation, Vec3::from_column(bias));
+        Running { so3, p, flags, last_ns: None, good: None, coasting: true }
+    }
+
+    fn publish(&self, pair: &ImuPair, running: Option<&Running>, flags: Flags) -> Solution {
+        let mut solution = Solution {
+            header: pair.header,
+            params_id: self.params.map_or(0, |params| params.id),
+            epoch: pair.epoch,
+            area: self.settings.area,
+            flags,
+            ..Solution::default()
+        };
+        let Some(running) = running else { return solution };
+        let (so3, p) = (&running.so3, &running.p);
+        let coasting = flags.contains(Flags::COASTING);
+        let deformation = if coasting { so3.predicted() } else { so3.deformation() };
+        let (mut rows, noise) = if coasting {
+            let mut rows = nalgebra::SMatrix::<f64, 3, 24>::zeros();
+            rows.fixed_view_mut::<3, 3>(0, place::STATIC).fill_with_identity();
+            rows.fixed_view_mut::<3, 3>(0, place::FLEXURE).fill_with_identity();
+            (rows, Matrix3::zeros())
+        } else {
+            (so3.deformation_rows(), so3.deformation_noise())
+        };
+        let triad = Matrix3::identity() * self.settings.grade.triad_variance();
+        let covariance = rows * p * rows.transpose() + noise + triad;
+        rows.fixed_view_mut::<3, 3>(0, place::STATIC)
+            .copy_from(&if coasting { Matrix3::zeros() } else { Matrix3::identity() });
+        let dynamic_covariance = rows * p * rows.transpose() + noise;
+        let static_covariance = p.fixed_view::<3, 3>(place::STATIC, place::STATIC) + triad;
+
+        solution.q = deformation.quaternion();
+        solution.static_q = so3.static_part().quaternion();
+        solution.constant = so3.constant().quaternion();
+        solution.phi = deformation.log().array();
+        solution.dynamic = (deformation * so3.static_part().inverse()).log().array();
+        solution.rate = so3.rate().array();
+        solution.drift = so3.drift().array();
+        solution.covariance = row_major(&covariance);
+        solution.static_covariance = row_major(&static_covariance);
+        solution.dynamic_covariance = row_major(&dynamic_covariance);
+        solution.range = covariance.diagonal().map(|v| RANGE * v.sqrt()).into();
+        solution.valid = u32::from(!coasting && covariance.diagonal().max() < LOST);
+        if pair.ins != [0.0; 4] {
+            let ship = Rot::<Nav, Main>::from_wxyz(pair.ins);
+            let c = ship.matrix();
+            let turned = (c * covariance * c.transpose()).diagonal();
+            solution.deck = (ship * deformation).quaternion();
+            solution.deck_sigma = std::array::from_fn(|i| (turned[i] + pair.ins_sigma[i].powi(2)).sqrt());
+        }
+        solution
+    }
+}
+
+impl Estimator for So3Estimator {
+    fn offer(&mut self, params: FlexureParams) {
+        let known = |other: &FlexureParams| other.id == params.id;
+        if self.params.as_ref().is_some_and(known) || self.waiting.iter().any(|other| known(other)) {
+            return;
+        }
+        if self.last_ns.is_some_and(|last_ns| last_ns >= params.effective_from_ns) {
+            self.late += 1;
+            self.news |= Flags::LATE;
+        }
+        if self.waiting.len() == WAITING {
+            self.waiting.pop_front();
+        }
+        let place = self.waiting.partition_point(|other| other.effective_from_ns <= params.effective_from_ns);
+        self.waiting.insert(place, params);
+    }
+
+    fn step(&mut self, pair: &ImuPair) -> Solution {
+        let time_ns = pair.header.time_ns;
+        self.adopt(time_ns);
+        self.last_ns = Some(time_ns);
+        self.register(pair);
+        let mut flags = pair.flags;
+        if self.params.is_none() && self.settings.flexure.is_none() {
+            flags |= Flags::PRIOR;
+        }
+        if let Phase::Running(running) = &mut self.phase {
+            if running.step(pair, &self.settings).is_none() {
+                self.phase = Phase::registering();
+                self.news |= Flags::RESET;
+            }
+        }
+        flags |= std::mem::take(&mut self.news);
+        match &self.phase {
+            Phase::Registering { .. } => self.publish(pair, None, flags | Flags::REGISTERING),
+            Phase::Running(running) => {
+                let coasting = if running.coasting { Flags::COASTING } else { Flags::empty() };
+                self.publish(pair, Some(running), flags | running.flags | coasting)
+            }
+        }
+    }
+}
+
+impl Running {
+    /// Takes in a pair; `None` when the numbers have become useless.
+    fn step(&mut self, pair: &ImuPair, settings: &Settings) -> Option<()> {
+        let time_ns = pair.header.time_ns;
+        let since = |before_ns: i64| unit::seconds(time_ns - before_ns).max(0.0);
+        self.so3.coast(self.last_ns.map_or(0.0, since));
+        self.last_ns = Some(time_ns);
+        let due = self.so3.pending_s() >= 1.0 / settings.filter_hz - 0.5 * settings.interval_s;
+        self.coasting = pair.flags.contains(Flags::GAP);
+        if self.coasting {
+            if due {
+                self.predict();
+            }
+            return self.is_sound();
+        }
+        let a_m = Rot::from_wxyz(pair.attitude_m);
+        let a_s = Rot::from_wxyz(pair.attitude_s);
+        match self.good {
+            Some(good) if good.epoch == pair.epoch => {
+                // from the accumulated attitudes, so that a pair lost on the way loses only time
+                let dtheta_m = (good.a_m.inverse() * a_m).log();
+                let time_s = since(good.time_ns);
+                self.so3.advance(&Increment { a_m, a_s, dtheta_m, time_s, disturbance: pair.disturbance });
+                if due {
+                    self.predict();
+                    let seen = self.so3.observe();
+                    let error = Kalman.update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
+                    self.so3.inject(&error);
+                }
+            }
+            _ => {
+                self.predict();
+                let transition = self.so3.start_epoch(a_m, a_s);
+                self.p = transition * self.p * transition.transpose();
+                symmetrise(&mut self.p);
+            }
+        }
+        self.good = Some(Good { epoch: pair.epoch, time_ns, a_m });
+        self.is_sound()
+    }
+
+    fn predict(&mut self) {
+        let prediction = self.so3.propagate();
+        self.p = prediction.transition * self.p * prediction.transition.transpose() + prediction.noise;
+        symmetrise(&mut self.p);
+    }
+
+    fn is_sound(&self) -> Option<()> {
+        let diagonal = self.p.diagonal();
+        (diagonal.iter().all(|v| v.is_finite() && *v >= 0.0) && self.so3.deformation().log().is_finite()).then_some(())
+    }
+}
+
+/// The broad guess of the flexure from the relative rate that a constant rotation leaves.
+fn guess(residual_rate: &Vector3<f64>) -> [Flexure; 3] {
+    let (mu, b, wider) = GUESS;
+    std::array::from_fn(|axis| Flexure { mu, b, sigma: (wider * residual_rate[axis] / b).max(LEAST_GUESS) })
+}
+
+/// The flexure model of a parameter set.
+pub fn model(params: &FlexureParams) -> [Flexure; 3] {
+    std::array::from_fn(|i| Flexure { mu: params.mu[i], b: params.b[i], sigma: params.sigma[i] })
+}
+
+fn row_major(m: &Matrix3<f64>) -> [f64; 9] {
+    std::array::from_fn(|i| m[(i / 3, i % 3)])
+}

@@ -1,0 +1,356 @@
+//! Attitude matching on SO(3), at any installation angle.
+//!
+//! Source: paper 001 eqs 11-30 reworked in product form. The units' accumulated attitudes obey `A_m D = N A_s` exactly, with
+//! `D = C_s^m = Exp(theta) S` and `N` constant but for gyro errors; all of the error of `D` is the error of `N`.
+//!
+//! | state | size | error | moves by |
+//! |---|---|---|---|
+//! | static part S | 3 | `S_true = Exp(s) S`, in m | its rate |
+//! | rate of S | 3 | additive, rad/s | white noise `q` |
+//! | flexure theta, its rate | 3 + 3 | additive, rad, rad/s | second-order Gauss-Markov, exact |
+//! | constant N | 3 | `N_true = Exp(-eta) N`, in the main unit's starting axes | relative gyro errors |
+//! | relative gyro bias | 3 | additive, rad/s, in m | constant |
+//! | relative scale and non-orthogonality | 6 | additive, symmetric matrix, in m | constant |
+//!
+//! Corrections to the paper: eq 29 lacks the derivative's dot; 39 states collapse to these because the units' single errors cannot be told
+//! apart; the Euler angles of eqs 22 and 35 give way to the rotation vector. The last six states are ours: as process noise the scale errors of a
+//! coarse unit would have to be called white, which they are not. The antisymmetric part of a triad's misalignment turns the unit as
+//! a whole, no data show it, and it widens the published covariance instead.
+//!
+//! Static part and flexure share ONE Jacobian, that at `theta = 0`: with the exact pair the flexure itself becomes a regressor for
+//! directions that nothing shows, and the filter invents information where there is no sway.
+
+use super::{Matching, Observation, Prediction};
+use crate::flexure::Flexure;
+use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
+use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector3};
+
+/// Size of the error state.
+pub const STATES: usize = 24;
+/// Places of the error states.
+pub mod place {
+    /// Static part.
+    pub const STATIC: usize = 0;
+    /// Its rate.
+    pub const STATIC_RATE: usize = 3;
+    /// Flexure.
+    pub const FLEXURE: usize = 6;
+    /// Its rate.
+    pub const FLEXURE_RATE: usize = 9;
+    /// The constant `N`.
+    pub const CONSTANT: usize = 12;
+    /// Relative gyro bias.
+    pub const BIAS: usize = 15;
+    /// Relative scale and non-orthogonality: xx, yy, zz, xy, xz, yz.
+    pub const SCALE: usize = 18;
+}
+
+/// Covariance of the error state.
+pub type Covariance = SMatrix<f64, STATES, STATES>;
+/// Error state.
+pub type ErrorState = SVector<f64, STATES>;
+type Rows = SMatrix<f64, 3, STATES>;
+type ByScale = SMatrix<f64, 3, 6>;
+
+/// Regularises a measurement that has no noise of its own: 0.05 arcsec.
+const MATCHING_SIGMA: f64 = 0.05 * unit::ARCSEC;
+
+/// The figures of one unit's gyros.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Gyro {
+    /// Angular random walk, rad/sqrt(s).
+    pub arw: f64,
+    /// Bias, rad/s, one standard deviation.
+    pub bias: f64,
+    /// Scale factor error, one standard deviation.
+    pub scale: f64,
+    /// Misalignment of a sensitive axis, rad, one standard deviation.
+    pub misalignment: f64,
+    /// White error of the stamps, s.
+    pub stamp_jitter: f64,
+}
+
+/// What the model takes as given.
+#[derive(Clone, Copy, Debug)]
+pub struct Grade {
+    /// Main unit.
+    pub main: Gyro,
+    /// Sub unit.
+    pub sub: Gyro,
+    /// Density of the white noise that drives the static part's rate, rad^2/s^3.
+    pub static_noise: f64,
+}
+
+impl Grade {
+    /// Variance of the angle that a whole triad may be turned by its misalignments, which no data show, rad^2.
+    pub fn triad_variance(&self) -> f64 {
+        0.5 * (self.main.misalignment.powi(2) + self.sub.misalignment.powi(2))
+    }
+
+    /// Covariance of the relative scale states for an installation `d`, from the units' figures.
+    pub fn scale_covariance(&self, d: Rot<Main, Sub>) -> Matrix6<f64> {
+        let own = |gyro: &Gyro| {
+            let (scale, skew) = (gyro.scale.powi(2), 0.5 * gyro.misalignment.powi(2));
+            Matrix6::from_diagonal(&[scale, scale, scale, skew, skew, skew].into())
+        };
+        let c = d.matrix();
+        let mut turn = Matrix6::zeros();
+        for column in 0..6 {
+            let mut unit = SVector::<f64, 6>::zeros();
+            unit[column] = 1.0;
+            turn.set_column(column, &components(&(c * symmetric(&unit) * c.transpose())));
+        }
+        own(&self.main) + turn * own(&self.sub) * turn.transpose()
+    }
+}
+
+/// The symmetric matrix of the components xx, yy, zz, xy, xz, yz.
+fn symmetric(m: &SVector<f64, 6>) -> Matrix3<f64> {
+    Matrix3::new(m[0], m[3], m[4], m[3], m[1], m[5], m[4], m[5], m[2])
+}
+
+/// The components of a symmetric matrix.
+fn components(m: &Matrix3<f64>) -> SVector<f64, 6> {
+    [m[(0, 0)], m[(1, 1)], m[(2, 2)], m[(0, 1)], m[(0, 2)], m[(1, 2)]].into()
+}
+
+/// `d(M w) / d(components of M)`.
+fn by_scale(w: Vector3<f64>) -> ByScale {
+    let (x, y, z) = (w.x, w.y, w.z);
+    ByScale::new(x, 0., 0., y, z, 0., 0., y, 0., x, 0., z, 0., 0., z, 0., x, y)
+}
+
+/// What has come in since the last propagation.
+#[derive(Clone, Copy, Debug)]
+struct Since {
+    time_s: f64,
+    /// `sum A_m dt`: how a bias error turns the constant.
+    by_bias: Matrix3<f64>,
+    /// The same for the scale states.
+    by_scale: ByScale,
+    /// Variance per axis that random walk, stamps and disturbances added to the constant.
+    walk: f64,
+    stamps: Matrix3<f64>,
+}
+
+impl Default for Since {
+    fn default() -> Self {
+        Self { time_s: 0.0, by_bias: Matrix3::zeros(), by_scale: ByScale::zeros(), walk: 0.0, stamps: Matrix3::zeros() }
+    }
+}
+
+/// The nominal state of one area.
+#[derive(Clone, Debug)]
+pub struct So3 {
+    grade: Grade,
+    flexure: [Flexure; 3],
+    static_part: Rot<Main, Sub>,
+    static_rate: Vec3<Main>,
+    theta: Vector3<f64>,
+    theta_rate: Vector3<f64>,
+    constant: Rot<MainStart, SubStart>,
+    bias: Vec3<Main>,
+    scale: SVector<f64, 6>,
+    a_m: Rot<MainStart, Main>,
+    a_s: Rot<SubStart, Sub>,
+    rate_m: Vector3<f64>,
+    since: Since,
+}
+
+/// The increments of one pair, as the model takes them in.
+#[derive(Clone, Copy, Debug)]
+pub struct Increment {
+    /// Accumulated attitude of the main unit.
+    pub a_m: Rot<MainStart, Main>,
+    /// Accumulated attitude of the sub unit.
+    pub a_s: Rot<SubStart, Sub>,
+    /// Angle increment of the main unit since the last pair taken in, rad.
+    pub dtheta_m: Vec3<Main>,
+    /// Its duration, s.
+    pub time_s: f64,
+    /// Standard deviation of further angle errors in it, rad.
+    pub disturbance: f64,
+}
+
+impl So3 {
+    /// A state at rest at the installation `static_part`, with a flexure model and a first idea of the relative gyro bias.
+    pub fn new(grade: Grade, flexure: [Flexure; 3], static_part: Rot<Main, Sub>, bias: Vec3<Main>) -> Self {
+        Self {
+            grade,
+            flexure,
+            static_part,
+            static_rate: Vec3::ZERO,
+            theta: Vector3::zeros(),
+            theta_rate: Vector3::zeros(),
+            constant: Rot::identity(),
+            bias,
+            scale: SVector::zeros(),
+            a_m: Rot::identity(),
+            a_s: Rot::identity(),
+            rate_m: Vector3::zeros(),
+            since: Since::default(),
+        }
+    }
+
+    /// Replaces the flexure model from now on.
+    pub fn set_flexure(&mut self, flexure: [Flexure; 3]) {
+        self.flexure = flexure;
+    }
+
+    /// Starts an epoch: the constant is defined by the deformation as it is believed to be now. Gives the transition of the error state:
+    /// the new constant's error is that of static part and flexure, turned into the starting axes.
+    pub fn start_epoch(&mut self, a_m: Rot<MainStart, Main>, a_s: Rot<SubStart, Sub>) -> SMatrix<f64, STATES, STATES> {
+        (self.a_m, self.a_s) = (a_m, a_s);
+        self.constant = a_m * self.predicted() * a_s.inverse();
+        let mut transition = Covariance::identity();
+        let minus_a = -a_m.matrix();
+        transition.fixed_view_mut::<3, 3>(place::CONSTANT, place::CONSTANT).fill(0.0);
+        transition.fixed_view_mut::<3, 3>(place::CONSTANT, place::STATIC).copy_from(&minus_a);
+        transition.fixed_view_mut::<3, 3>(place::CONSTANT, place::FLEXURE).copy_from(&minus_a);
+        transition
+    }
+
+    /// Takes in one pair: the constant drifts by the relative gyro errors as they are known.
+    pub fn advance(&mut self, step: &Increment) {
+        let mid = step.a_m * Rot::<Main, Main>::exp(step.dtheta_m * -0.5);
+        let dtheta = step.dtheta_m.column();
+        let drift = self.bias * step.time_s + Vec3::from_column(symmetric(&self.scale) * dtheta);
+        self.constant = (Rot::<MainStart, MainStart>::exp(mid * drift) * self.constant).normalised();
+        let rate = if step.time_s > 0.0 { dtheta / step.time_s } else { self.rate_m };
+        let a = mid.matrix();
+        let jitter = self.grade.main.stamp_jitter.powi(2) + self.grade.sub.stamp_jitter.powi(2);
+        let change = a * (rate - self.rate_m);
+        let since = &mut self.since;
+        since.by_bias += a * step.time_s;
+        since.by_scale += a * by_scale(dtheta);
+        since.walk += (self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2)) * step.time_s + step.disturbance.powi(2);
+        since.stamps += change * change.transpose() * jitter;
+        (self.a_m, self.a_s, self.rate_m) = (step.a_m, step.a_s, rate);
+    }
+
+    /// Lets time pass for the model of static part and flexure.
+    pub fn coast(&mut self, time_s: f64) {
+        self.since.time_s += time_s;
+    }
+
+    /// The time since the last propagation, s.
+    pub fn pending_s(&self) -> f64 {
+        self.since.time_s
+    }
+
+    /// The deformation by the units' attitudes: two products a sample, without a filter step.
+    pub fn deformation(&self) -> Rot<Main, Sub> {
+        self.a_m.inverse() * self.constant * self.a_s
+    }
+
+    /// The deformation by the model alone, which is all there is while data are missing.
+    pub fn predicted(&self) -> Rot<Main, Sub> {
+        Rot::<Main, Main>::exp(Vec3::from_column(self.theta)) * self.static_part
+    }
+
+    /// Static part.
+    pub fn static_part(&self) -> Rot<Main, Sub> {
+        self.static_part
+    }
+
+    /// The constant of the epoch.
+    pub fn constant(&self) -> Rot<MainStart, SubStart> {
+        self.constant
+    }
+
+    /// Relative gyro errors as they are known, at the present rate of the main unit, rad/s.
+    pub fn drift(&self) -> Vec3<Main> {
+        self.bias + Vec3::from_column(symmetric(&self.scale) * self.rate_m)
+    }
+
+    /// Rate of the deformation by the filter, rad/s.
+    pub fn rate(&self) -> Vec3<Main> {
+        Vec3::from_column(self.theta_rate) + self.static_rate
+    }
+
+    /// How the error of [`So3::deformation`] (`Log(D_hat D_true^T)`, in m) depends on the error state.
+    pub fn deformation_rows(&self) -> Rows {
+        let back = self.a_m.inverse().matrix();
+        let mut rows = Rows::zeros();
+        rows.fixed_view_mut::<3, 3>(0, place::CONSTANT).copy_from(&back);
+        rows.fixed_view_mut::<3, 3>(0, place::BIAS).copy_from(&(-back * self.since.by_bias));
+        rows.fixed_view_mut::<3, 6>(0, place::SCALE).copy_from(&(-back * self.since.by_scale));
+        rows
+    }
+
+    /// Covariance that has entered the deformation since the last propagation, in m.
+    pub fn deformation_noise(&self) -> Matrix3<f64> {
+        let back = self.a_m.inverse().matrix();
+        Matrix3::identity() * self.since.walk + back * self.since.stamps * back.transpose() + self.stamp_noise()
+    }
+
+    /// White error of the attitudes by the jitter of the stamps, in m.
+    fn stamp_noise(&self) -> Matrix3<f64> {
+        let jitter = self.grade.main.stamp_jitter.powi(2) + self.grade.sub.stamp_jitter.powi(2);
+        self.rate_m * self.rate_m.transpose() * jitter
+    }
+}
+
+impl Matching<STATES, 3> for So3 {
+    fn propagate(&mut self) -> Prediction<STATES> {
+        let since = std::mem::take(&mut self.since);
+        let h = since.time_s;
+        let mut transition = Covariance::identity();
+        let mut noise = Covariance::zeros();
+        self.static_part = (Rot::<Main, Main>::exp(self.static_rate * h) * self.static_part).normalised();
+        let q = self.grade.static_noise;
+        for axis in 0..3 {
+            let (s, r) = (place::STATIC + axis, place::STATIC_RATE + axis);
+            transition[(s, r)] = h;
+            noise[(s, s)] = q * h * h * h / 3.0;
+            noise[(s, r)] = q * h * h / 2.0;
+            noise[(r, s)] = noise[(s, r)];
+            noise[(r, r)] = q * h;
+
+            let (x, v) = (place::FLEXURE + axis, place::FLEXURE_RATE + axis);
+            let (f, n) = (self.flexure[axis].transition(h), self.flexure[axis].noise(h));
+            for (i, row) in [x, v].into_iter().enumerate() {
+                for (j, column) in [x, v].into_iter().enumerate() {
+                    transition[(row, column)] = f[(i, j)];
+                    noise[(row, column)] = n[(i, j)];
+                }
+            }
+            let (theta, rate) = (self.theta[axis], self.theta_rate[axis]);
+            self.theta[axis] = f[(0, 0)] * theta + f[(0, 1)] * rate;
+            self.theta_rate[axis] = f[(1, 0)] * theta + f[(1, 1)] * rate;
+        }
+        transition.fixed_view_mut::<3, 3>(place::CONSTANT, place::BIAS).copy_from(&-since.by_bias);
+        transition.fixed_view_mut::<3, 6>(place::CONSTANT, place::SCALE).copy_from(&-since.by_scale);
+        let walk = Matrix3::identity() * since.walk + since.stamps;
+        noise.fixed_view_mut::<3, 3>(place::CONSTANT, place::CONSTANT).copy_from(&walk);
+        Prediction { transition, noise }
+    }
+
+    fn observe(&self) -> Observation<STATES, 3> {
+        let mut matrix = Rows::zeros();
+        matrix.fixed_view_mut::<3, 3>(0, place::STATIC).fill_with_identity();
+        matrix.fixed_view_mut::<3, 3>(0, place::FLEXURE).fill_with_identity();
+        matrix.fixed_view_mut::<3, 3>(0, place::CONSTANT).copy_from(&self.a_m.inverse().matrix());
+        let mismatch = self.predicted() * self.deformation().inverse();
+        Observation {
+            residual: -mismatch.log().column(),
+            matrix,
+            noise: Matrix3::identity() * MATCHING_SIGMA.powi(2) + self.stamp_noise(),
+        }
+    }
+
+    fn inject(&mut self, error: &ErrorState) {
+        let three = |place: usize| Vec3::<Main>::from_column(error.fixed_rows::<3>(place).into());
+        self.static_part = Rot::<Main, Main>::exp(three(place::STATIC)) * self.static_part;
+        self.static_rate += three(place::STATIC_RATE);
+        self.theta += error.fixed_rows::<3>(place::FLEXURE);
+        self.theta_rate += error.fixed_rows::<3>(place::FLEXURE_RATE);
+        let eta = three(place::CONSTANT).relabel::<MainStart>();
+        self.constant = Rot::<MainStart, MainStart>::exp(-eta) * self.constant;
+        self.bias += three(place::BIAS);
+        self.scale += error.fixed_rows::<6>(place::SCALE);
+    }
+}
+
+#[cfg(test)]
+mod tests;
