@@ -1,1 +1,9 @@
-//! Configuration, data sources and the offline loop.
+//! Configuration, data sources, the offline loop and what it writes.
+
+pub mod configuration;
+pub mod lane;
+pub mod offline;
+pub mod recording;
+pub mod solution_file;
+pub mod source;
+pub mod summary;

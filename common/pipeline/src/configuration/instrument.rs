@@ -1,0 +1,135 @@
+//! What the configuration says about an inertial unit: its source, its grade and how it is mounted.
+
+use super::{quantity, table};
+use frames::{Case, Frame, Rot, Vec3};
+use nalgebra::Matrix3;
+use serde::Deserialize;
+use serde::de::{Deserializer, Error};
+use std::path::PathBuf;
+
+/// Where the samples of a unit come from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Source {
+    /// A recording; the path is absolute.
+    Csv(PathBuf),
+    /// The simulator.
+    Simulator,
+}
+
+impl Source {
+    /// The name of the kind, as in the configuration.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Csv(_) => "csv",
+            Self::Simulator => "simulator",
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Kind {
+    Csv,
+    Simulator,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SourceTable {
+    kind: Kind,
+    path: Option<PathBuf>,
+}
+
+/// The path is still the one that stands in the file.
+pub(super) fn source<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Source, D::Error> {
+    let source: SourceTable = table::one(deserializer)?;
+    match (source.kind, source.path) {
+        (Kind::Csv, Some(path)) => Ok(Source::Csv(path)),
+        (Kind::Csv, None) => Err(D::Error::custom("a source of kind \"csv\" needs the key `path`")),
+        (Kind::Simulator, None) => Ok(Source::Simulator),
+        (Kind::Simulator, Some(_)) => Err(D::Error::custom("a source of kind \"simulator\" has no `path`")),
+    }
+}
+
+/// The grade of a gyro triad: one standard deviation each.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gyro {
+    /// Angle random walk, rad/sqrt(s).
+    #[serde(rename = "arw_deg_per_sqrt_h", deserialize_with = "quantity::arw_deg_per_sqrt_h")]
+    pub arw: f64,
+    /// Bias, rad/s.
+    #[serde(rename = "bias_deg_per_h", deserialize_with = "quantity::bias_deg_per_h")]
+    pub bias: f64,
+    /// Scale factor error, a ratio.
+    #[serde(rename = "scale_ppm", default, deserialize_with = "quantity::scale_ppm")]
+    pub scale: f64,
+    /// Error of the direction of an axis, rad.
+    #[serde(rename = "misalignment_arcsec", default, deserialize_with = "quantity::misalignment_arcsec")]
+    pub misalignment: f64,
+    /// Jitter of the time stamps, s.
+    #[serde(rename = "stamp_jitter_us", default, deserialize_with = "quantity::stamp_jitter_us")]
+    pub stamp_jitter: f64,
+    /// End of the measuring range, rad/s; `None` if it is not known.
+    #[serde(rename = "range_deg_per_s", default, deserialize_with = "quantity::range_deg_per_s")]
+    pub range: Option<f64>,
+}
+
+/// The grade of an accelerometer triad: one standard deviation each.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Accel {
+    /// Velocity random walk, m/s/sqrt(s).
+    #[serde(rename = "vrw_ug_per_sqrt_hz", default, deserialize_with = "quantity::vrw_ug_per_sqrt_hz")]
+    pub vrw: f64,
+    /// Bias, m/s^2.
+    #[serde(rename = "bias_ug", default, deserialize_with = "quantity::bias_ug")]
+    pub bias: f64,
+    /// Scale factor error, a ratio.
+    #[serde(rename = "scale_ppm", default, deserialize_with = "quantity::scale_ppm")]
+    pub scale: f64,
+    /// Error of the direction of an axis, rad.
+    #[serde(rename = "misalignment_arcsec", default, deserialize_with = "quantity::misalignment_arcsec")]
+    pub misalignment: f64,
+    /// End of the measuring range, m/s^2; `None` if it is not known.
+    #[serde(rename = "range_g", default, deserialize_with = "quantity::range_g")]
+    pub range: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MountingTable {
+    #[serde(default, deserialize_with = "quantity::rotation_vector_deg")]
+    rotation_vector_deg: Option<[f64; 3]>,
+    #[serde(default, deserialize_with = "quantity::matrix")]
+    matrix: Option<[[f64; 3]; 3]>,
+}
+
+/// Body axes from the unit's case axes.
+pub(super) fn mounting<'de, D: Deserializer<'de>, F: Frame>(deserializer: D) -> Result<Rot<F, Case>, D::Error> {
+    let mounting: MountingTable = table::one(deserializer)?;
+    match (mounting.rotation_vector_deg, mounting.matrix) {
+        (Some(phi), None) => Ok(Rot::exp(Vec3::from(phi))),
+        (None, Some(rows)) => rotation(rows).map_err(D::Error::custom),
+        _ => Err(D::Error::custom("needs either `rotation_vector_deg` or `matrix`")),
+    }
+}
+
+/// A matrix typed with few decimals is accepted and replaced by the nearest rotation.
+fn rotation<F: Frame>(rows: [[f64; 3]; 3]) -> Result<Rot<F, Case>, String> {
+    let c = Matrix3::from_fn(|row, column| rows[row][column]);
+    let excess = (c * c.transpose() - Matrix3::identity()).amax();
+    if excess > 1e-3 {
+        return Err(format!(
+            "the matrix must be orthogonal within 0.001, but C C^T differs from the unit matrix by {excess:.4}"
+        ));
+    }
+    if c.determinant() < 0.0 {
+        return Err("the matrix must have the determinant +1, but it has -1: it mirrors an axis".into());
+    }
+    let svd = c.svd(true, true);
+    match (svd.u, svd.v_t) {
+        (Some(u), Some(v_t)) => Ok(Rot::from_matrix(&(u * v_t))),
+        _ => Err("the matrix has no nearest rotation".into()),
+    }
+}

@@ -1,0 +1,132 @@
+//! The configuration: one TOML file whose keys carry their unit; SI units from here on.
+
+mod area;
+mod document;
+mod error;
+mod instrument;
+mod quantity;
+mod rules;
+mod scenario;
+mod simulation;
+mod stages;
+mod table;
+
+pub use area::{Area, Installation, MainUnit};
+pub use error::ConfigurationError;
+pub use instrument::{Accel, Gyro, Source};
+pub use simulation::{AreaSimulation, Ins, Simulation, Sway, Wire};
+pub use stages::{EstimatorMethod, EstimatorSettings, IdentifierMethod, IdentifierSettings};
+
+use document::Document;
+use serde::{Deserialize, Deserializer};
+use std::path::{Path, PathBuf};
+
+/// Everything that a run is told.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Configuration {
+    /// The file, as it was named.
+    #[serde(skip)]
+    pub path: PathBuf,
+    /// Samples a second of every unit.
+    #[serde(deserialize_with = "quantity::rate_hz")]
+    pub rate_hz: f64,
+    /// A unit that gives nothing for so long is silent, s.
+    #[serde(default = "half", deserialize_with = "quantity::silence_s")]
+    pub silence_s: f64,
+    /// The error figures of a summary leave out the first so many seconds.
+    #[serde(default = "two_minutes", deserialize_with = "quantity::settle_s")]
+    pub settle_s: f64,
+    /// The main inertial unit.
+    #[serde(deserialize_with = "table::one")]
+    pub main: MainUnit,
+    /// The deck areas, at least one.
+    #[serde(rename = "area", default, deserialize_with = "table::many")]
+    pub areas: Vec<Area>,
+    /// How the run is carried out.
+    #[serde(default, deserialize_with = "table::one")]
+    pub run: Run,
+    /// Recordings are played back at so many times the recorded pace.
+    #[serde(rename = "replay", default = "as_recorded", deserialize_with = "pace")]
+    pub replay_pace: f64,
+    /// What the simulator makes of the ship.
+    #[serde(default, deserialize_with = "table::one")]
+    pub simulation: Simulation,
+}
+
+fn half() -> f64 {
+    0.5
+}
+
+fn two_minutes() -> f64 {
+    120.0
+}
+
+impl Configuration {
+    /// Reads and checks a configuration, and that its recordings exist.
+    ///
+    /// # Errors
+    /// The file cannot be read or is not TOML; a key is unknown, missing, of the wrong type or out of its range; keys
+    /// contradict each other; a recording cannot be found.
+    pub fn read(path: &Path) -> Result<Self, ConfigurationError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|reason| ConfigurationError::Unreadable { path: path.to_path_buf(), reason })?;
+        let document = Document::parse(path, &text)?;
+        let mut configuration: Self = toml::from_str(&text).map_err(|error| document.explain(&error))?;
+        configuration.path = path.to_path_buf();
+        rules::apply(&mut configuration, &document)?;
+        Ok(configuration)
+    }
+
+    /// The nominal time from one sample to the next, ns.
+    pub fn interval_ns(&self) -> i64 {
+        frames::unit::nanoseconds(1.0 / self.rate_hz)
+    }
+}
+
+/// How a run is carried out.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Run {
+    /// Seed of all random numbers of the simulator.
+    pub seed: u64,
+    /// Length of the data, s; `None` runs until it is stopped or the recording ends.
+    #[serde(deserialize_with = "quantity::duration_s")]
+    pub duration_s: Option<f64>,
+    /// The scheduling class to ask for.
+    pub scheduling: SchedulingChoice,
+}
+
+impl Default for Run {
+    fn default() -> Self {
+        Self { seed: 1, duration_s: None, scheduling: SchedulingChoice::Auto }
+    }
+}
+
+/// The scheduling class to ask for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SchedulingChoice {
+    /// Real-time if the operating system grants it.
+    #[default]
+    Auto,
+    /// The ordinary time-sharing class.
+    Normal,
+    /// Real-time, first in first out; an error if it is not granted.
+    Fifo,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Replay {
+    #[serde(default = "as_recorded", deserialize_with = "quantity::pace")]
+    pace: f64,
+}
+
+fn as_recorded() -> f64 {
+    1.0
+}
+
+fn pace<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    table::one(deserializer).map(|replay: Replay| replay.pace)
+}

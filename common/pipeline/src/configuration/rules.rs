@@ -1,0 +1,86 @@
+//! Rules that more than one key takes part in.
+
+use super::document::Document;
+use super::{Area, Configuration, ConfigurationError, Source};
+use std::path::Path;
+
+/// Makes the paths of the recordings absolute and checks the whole; all faults are reported.
+pub(super) fn apply(configuration: &mut Configuration, document: &Document) -> Result<(), ConfigurationError> {
+    let mut faults = Vec::new();
+    let folder = std::path::absolute(&configuration.path).unwrap_or_else(|_| configuration.path.clone());
+    let folder = folder.parent().unwrap_or(Path::new(""));
+    faults.extend(locate(&mut configuration.main.source, folder, "main", document));
+    for (i, area) in configuration.areas.iter_mut().enumerate() {
+        faults.extend(locate(&mut area.source, folder, &format!("area[{i}]"), document));
+    }
+    sources(configuration, document, &mut faults);
+    names(&configuration.areas, document, &mut faults);
+    times(configuration, document, &mut faults);
+    match faults.len() {
+        0 => Ok(()),
+        1 => Err(faults.remove(0)),
+        _ => Err(ConfigurationError::Several(faults)),
+    }
+}
+
+fn locate(source: &mut Source, folder: &Path, unit: &str, document: &Document) -> Option<ConfigurationError> {
+    let Source::Csv(path) = source else { return None };
+    *path = folder.join(&*path);
+    let reason = match std::fs::metadata(&*path) {
+        Ok(data) if data.is_dir() => "it is a folder".to_string(),
+        Ok(_) => return None,
+        Err(error) => error.to_string(),
+    };
+    Some(document.fault(&format!("{unit}.source.path"), &format!("cannot read {}: {reason}", path.display())))
+}
+
+fn sources(configuration: &Configuration, document: &Document, faults: &mut Vec<ConfigurationError>) {
+    let kind = configuration.main.source.kind();
+    for (i, area) in configuration.areas.iter().enumerate() {
+        if area.source.kind() != kind {
+            let message = format!("all sources must be of one kind, and [main] has \"{kind}\"");
+            faults.push(document.fault(&format!("area[{i}].source.kind"), &message));
+        }
+    }
+    let mut useless = |key: &str| {
+        if document.has(key) {
+            faults.push(document.fault(key, &format!("has no effect with sources of kind \"{kind}\"")));
+        }
+    };
+    if kind == "csv" {
+        useless("simulation");
+        (0..configuration.areas.len()).for_each(|i| useless(&format!("area[{i}].simulation")));
+    } else {
+        useless("replay");
+    }
+}
+
+fn names(areas: &[Area], document: &Document, faults: &mut Vec<ConfigurationError>) {
+    if areas.is_empty() {
+        faults.push(document.fault("area", "at least one [[area]] is required"));
+    }
+    for (i, area) in areas.iter().enumerate() {
+        if let Some(first) = areas[..i].iter().position(|other| other.name == area.name) {
+            faults.push(document.fault(&format!("area[{i}].name"), &format!("area[{first}] has the same name")));
+        }
+    }
+}
+
+fn times(configuration: &Configuration, document: &Document, faults: &mut Vec<ConfigurationError>) {
+    let rate = configuration.rate_hz;
+    if configuration.silence_s * rate < 2.0 {
+        let message = format!("must be at least two samples, {} s at {rate} Hz", 2.0 / rate);
+        faults.push(document.fault("silence_s", &message));
+    }
+    for (i, area) in configuration.areas.iter().enumerate() {
+        if area.estimator.filter_hz > rate {
+            let message = format!("must not be above rate_hz = {rate}");
+            faults.push(document.fault(&format!("area[{i}].estimator.filter_hz"), &message));
+        }
+        let (minimum, window) = (area.identifier.minimum_s, area.identifier.window_s);
+        if minimum > window {
+            let message = format!("{minimum} s is longer than window_s = {window}");
+            faults.push(document.fault(&format!("area[{i}].identifier.minimum_s"), &message));
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! The settings of the two stages that serve an area.
+
+use super::{quantity, table};
+use estimation::flexure::Flexure;
+use frames::unit;
+use serde::Deserialize;
+use serde::de::{Deserializer, Error};
+
+/// The methods of the fast stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EstimatorMethod {
+    /// Attitude matching on SO(3).
+    #[default]
+    So3,
+}
+
+/// The fast stage.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct EstimatorSettings {
+    /// Which method.
+    pub method: EstimatorMethod,
+    /// How often the filter takes a measurement, Hz.
+    #[serde(deserialize_with = "quantity::filter_hz")]
+    pub filter_hz: f64,
+    /// How long to try registering by motion before falling back to the configured installation, s.
+    #[serde(deserialize_with = "quantity::registration_s")]
+    pub registration_s: f64,
+    /// Density of the noise that drives the rate of the static part, rad^2/s^3.
+    #[serde(
+        rename = "static_rate_noise_arcsec2_per_s3",
+        deserialize_with = "quantity::static_rate_noise_arcsec2_per_s3"
+    )]
+    pub static_rate_noise: f64,
+}
+
+impl Default for EstimatorSettings {
+    fn default() -> Self {
+        Self {
+            method: EstimatorMethod::So3,
+            filter_hz: 10.0,
+            registration_s: 20.0,
+            static_rate_noise: 1e-4 * unit::ARCSEC * unit::ARCSEC,
+        }
+    }
+}
+
+/// The methods of the slow stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum IdentifierMethod {
+    /// Relevance vector machine.
+    #[default]
+    Rvm,
+    /// Nothing is learnt: this model, an axis of m each.
+    Fixed([Flexure; 3]),
+}
+
+/// The slow stage.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IdentifierSettings {
+    /// Which method.
+    pub method: IdentifierMethod,
+    /// Length of the window of data, s.
+    pub window_s: f64,
+    /// Time from one parameter set to the next, s.
+    pub period_s: f64,
+    /// From the end of a window to the data time at which its parameters take effect, s.
+    pub lead_s: f64,
+    /// Shortest window that gives parameters, s.
+    pub minimum_s: f64,
+    /// Size factor of the dictionary of models, 1 to 100.
+    pub dictionary: usize,
+}
+
+impl Default for IdentifierSettings {
+    fn default() -> Self {
+        Self {
+            method: IdentifierMethod::Rvm,
+            window_s: 300.0,
+            period_s: 10.0,
+            lead_s: 1.0,
+            minimum_s: 10.0,
+            dictionary: 1,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Method {
+    Rvm,
+    Fixed,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, default)]
+struct IdentifierTable {
+    method: Method,
+    #[serde(deserialize_with = "quantity::window_s")]
+    window_s: f64,
+    #[serde(deserialize_with = "quantity::period_s")]
+    period_s: f64,
+    #[serde(deserialize_with = "quantity::lead_s")]
+    lead_s: f64,
+    #[serde(deserialize_with = "quantity::window_s")]
+    minimum_s: f64,
+    #[serde(deserialize_with = "quantity::dictionary")]
+    dictionary: usize,
+    #[serde(deserialize_with = "table::optional")]
+    flexure: Option<FlexureTable>,
+}
+
+impl Default for IdentifierTable {
+    fn default() -> Self {
+        let IdentifierSettings { method: _, window_s, period_s, lead_s, minimum_s, dictionary } = Default::default();
+        Self { method: Method::Rvm, window_s, period_s, lead_s, minimum_s, dictionary, flexure: None }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct FlexureTable {
+    #[serde(deserialize_with = "quantity::mu_per_s")]
+    mu_per_s: [f64; 3],
+    #[serde(deserialize_with = "quantity::b_rad_per_s")]
+    b_rad_per_s: [f64; 3],
+    #[serde(deserialize_with = "quantity::sigma_arcsec")]
+    sigma_arcsec: [f64; 3],
+}
+
+/// Joins method and flexure.
+pub(super) fn identifier<'de, D: Deserializer<'de>>(deserializer: D) -> Result<IdentifierSettings, D::Error> {
+    let table: IdentifierTable = table::one(deserializer)?;
+    let method = match (table.method, table.flexure) {
+        (Method::Rvm, None) => IdentifierMethod::Rvm,
+        (Method::Rvm, Some(_)) => {
+            return Err(D::Error::custom("the key `flexure` goes with method \"fixed\" only, not with \"rvm\""));
+        }
+        (Method::Fixed, None) => return Err(D::Error::custom("method \"fixed\" needs the key `flexure`")),
+        (Method::Fixed, Some(f)) => IdentifierMethod::Fixed(std::array::from_fn(|i| Flexure {
+            mu: f.mu_per_s[i],
+            b: f.b_rad_per_s[i],
+            sigma: f.sigma_arcsec[i],
+        })),
+    };
+    let IdentifierTable { window_s, period_s, lead_s, minimum_s, dictionary, .. } = table;
+    Ok(IdentifierSettings { method, window_s, period_s, lead_s, minimum_s, dictionary })
+}

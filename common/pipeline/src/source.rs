@@ -1,0 +1,105 @@
+//! Where samples come from: the simulator or recordings, one main sample at a time.
+
+use crate::configuration::{Configuration, Source as Kind};
+use crate::recording::{Recording, RecordingError, Row};
+use frames::unit::nanoseconds;
+use messages::{ImuSample, MainAttitude, Truth};
+use simulation::Simulator;
+use std::path::Path;
+
+/// How far beyond the main unit's last sample the sub units' are still wanted, ns.
+const TAIL_NS: i64 = 1_000_000_000;
+
+/// What is handed out at one main sampling instant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Batch {
+    /// The main unit's sample.
+    pub main: ImuSample,
+    /// The main INS's attitude at the same instant, if there is one.
+    pub attitude: Option<MainAttitude>,
+    /// The sub units' samples that have come by now; `unit` is 1 + the index of the area.
+    pub sub: Vec<ImuSample>,
+    /// The truth of each area, from a simulator.
+    pub truth: Vec<Truth>,
+}
+
+/// A source of samples.
+pub enum Source {
+    /// Simulated units.
+    Simulated(Box<Simulator>),
+    /// Recorded units.
+    Recorded(Recorded),
+}
+
+/// Recordings of the main unit and of each area, merged by time.
+pub struct Recorded {
+    main: Recording,
+    areas: Vec<std::iter::Peekable<Recording>>,
+    next: Option<Row>,
+    duration_ns: i64,
+    begin_ns: Option<i64>,
+}
+
+impl Source {
+    /// The source that the configuration names.
+    ///
+    /// # Errors
+    /// A recording cannot be opened or its columns are not known.
+    pub fn open(configuration: &Configuration, run_id: u64) -> Result<Self, RecordingError> {
+        match &configuration.main.source {
+            Kind::Simulator => Ok(Self::Simulated(Box::new(Simulator::new(&configuration.scenario(run_id))))),
+            Kind::Csv(path) => Recorded::open(configuration, path, run_id).map(Self::Recorded),
+        }
+    }
+
+    /// Fills in the next batch; `false` at the end of the run.
+    pub fn next(&mut self, batch: &mut Batch) -> bool {
+        batch.sub.clear();
+        batch.truth.clear();
+        match self {
+            Self::Simulated(simulator) => simulator.step().is_some_and(|epoch| {
+                batch.main = epoch.main;
+                batch.attitude = Some(epoch.attitude);
+                batch.sub.extend_from_slice(&epoch.sub);
+                batch.truth.extend_from_slice(&epoch.truth);
+                true
+            }),
+            Self::Recorded(recorded) => recorded.next(batch),
+        }
+    }
+}
+
+impl Recorded {
+    fn open(configuration: &Configuration, main: &Path, run_id: u64) -> Result<Self, RecordingError> {
+        let interval_ns = configuration.interval_ns();
+        let open = |path: &Path, unit: usize| Recording::open(path, unit as u32, run_id, interval_ns);
+        let mut areas = Vec::new();
+        for (index, area) in configuration.areas.iter().enumerate() {
+            if let Kind::Csv(path) = &area.source {
+                areas.push(open(path, 1 + index)?.peekable());
+            }
+        }
+        let mut main = open(main, 0)?;
+        let next = main.next();
+        let duration_ns = configuration.run.duration_s.map_or(i64::MAX, nanoseconds);
+        Ok(Self { main, areas, next, duration_ns, begin_ns: None })
+    }
+
+    fn next(&mut self, batch: &mut Batch) -> bool {
+        let Some(row) = self.next.take() else { return false };
+        let time_ns = row.sample.header.time_ns;
+        let begin_ns = *self.begin_ns.get_or_insert(time_ns);
+        if time_ns.saturating_sub(begin_ns) > self.duration_ns {
+            return false;
+        }
+        self.next = self.main.next();
+        (batch.main, batch.attitude) = (row.sample, row.attitude);
+        let until_ns = if self.next.is_some() { time_ns } else { time_ns.saturating_add(TAIL_NS) };
+        for area in &mut self.areas {
+            while let Some(row) = area.next_if(|row| row.sample.header.time_ns <= until_ns) {
+                batch.sub.push(row.sample);
+            }
+        }
+        true
+    }
+}
