@@ -1,3 +1,204 @@
-//! deckflex: deck deformation of a ship from two or more inertial units.
+//! deckflex: deck deformation of a ship from two or more inertial units, in real time, with an error range.
 
-fn main() {}
+use clap::{Args, Parser, Subcommand};
+use pipeline::configuration::Configuration;
+use runtime::{Context, POISONED_EXIT_CODE, TransportError};
+use std::error::Error;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+/// Deck deformation of a ship from two or more inertial units, in real time, with an error range.
+#[derive(Parser)]
+#[command(version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Start the process set of a configuration and print the latency of every stage at the end
+    Launch {
+        configuration: PathBuf,
+        /// Length of the run, such as 60s or 10min; without it until the source ends or Ctrl-C
+        #[arg(long, value_parser = humantime::parse_duration)]
+        duration: Option<Duration>,
+        /// Write the report as JSON
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+        /// Write the latencies as HdrHistogram interval logs
+        #[arg(long, value_name = "DIR")]
+        hlog: Option<PathBuf>,
+        /// Write the solutions, the same files as `process`
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+    /// Run the same steps in one thread without transport, as fast as it goes
+    Process {
+        configuration: PathBuf,
+        /// Length of the data, such as 60s or 10min
+        #[arg(long, value_parser = humantime::parse_duration)]
+        duration: Option<Duration>,
+        /// Where the solutions and the summary go
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
+    /// Check a configuration and the head of each recording
+    Check { configuration: PathBuf },
+    /// Stage: simulated units (started by launch)
+    Simulate(StageArgs),
+    /// Stage: recorded units (started by launch)
+    Replay(StageArgs),
+    /// Stage: one area's samples onto the main unit's instants (started by launch)
+    Synchronise(AreaArgs),
+    /// Stage: one area's deformation (started by launch)
+    Estimate(AreaArgs),
+    /// Stage: one area's flexure parameters (started by launch)
+    Identify(AreaArgs),
+}
+
+#[derive(Args)]
+struct StageArgs {
+    configuration: PathBuf,
+    /// Root of the transport domain, made by launch
+    #[arg(long, value_name = "DIR")]
+    domain: PathBuf,
+    #[arg(long, default_value_t = 1)]
+    run_id: u64,
+    /// When the first sample is due, on the monotonic clock
+    #[arg(long, value_name = "NS", default_value_t = 0)]
+    epoch_ns: i64,
+    #[arg(long, value_parser = humantime::parse_duration)]
+    duration: Option<Duration>,
+}
+
+#[derive(Args)]
+struct AreaArgs {
+    #[command(flatten)]
+    stage: StageArgs,
+    /// Name of the area
+    #[arg(long)]
+    area: String,
+}
+
+/// The configuration, the recording or the command line cannot be used.
+const UNUSABLE: u8 = 2;
+
+type Outcome = Result<ExitCode, Box<dyn Error>>;
+
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Launch { configuration, duration, json, hlog, out } => {
+            launch(configuration, duration, json, hlog, out)
+        }
+        Command::Process { configuration, duration, out } => process(configuration, duration, &out),
+        Command::Check { configuration } => check(configuration),
+        Command::Simulate(args) => stage(&args, simulate::run),
+        Command::Replay(args) => stage(&args, replay::run),
+        Command::Synchronise(args) => of_area(&args, synchronise::run),
+        Command::Estimate(args) => of_area(&args, estimate::run),
+        Command::Identify(args) => of_area(&args, identify::run),
+    };
+    outcome.unwrap_or_else(|error| failed(error.as_ref()))
+}
+
+/// Prints the error; the exit code tells the launcher and scripts what to do about it.
+fn failed(error: &(dyn Error + 'static)) -> ExitCode {
+    eprintln!("deckflex: {error}");
+    let poisoned = error.downcast_ref::<TransportError>().is_some_and(TransportError::is_poisoned)
+        || matches!(error.downcast_ref(), Some(replay::ReplayError::Transport(error)) if error.is_poisoned());
+    let unusable = error.is::<pipeline::configuration::ConfigurationError>()
+        || error.is::<check::CheckError>()
+        || matches!(error.downcast_ref(), Some(process::ProcessError::Recording(_)))
+        || matches!(error.downcast_ref(), Some(replay::ReplayError::Recording(_)))
+        || error.is::<NoSuchArea>();
+    match (poisoned, unusable) {
+        (true, _) => ExitCode::from(POISONED_EXIT_CODE),
+        (_, true) => ExitCode::from(UNUSABLE),
+        _ => ExitCode::FAILURE,
+    }
+}
+
+fn read(path: &std::path::Path, duration: Option<Duration>) -> Result<Configuration, Box<dyn Error>> {
+    let mut configuration = Configuration::read(path)?;
+    if let Some(duration) = duration {
+        configuration.run.duration_s = Some(duration.as_secs_f64());
+    }
+    Ok(configuration)
+}
+
+fn launch(
+    path: PathBuf,
+    duration: Option<Duration>,
+    json: Option<PathBuf>,
+    hlog: Option<PathBuf>,
+    out: Option<PathBuf>,
+) -> Outcome {
+    let configuration = read(&path, duration)?;
+    // the recordings too, before any process starts
+    let found = check::run(&path)?;
+    found.suspicions().iter().for_each(|suspicion| eprintln!("deckflex: {suspicion}"));
+    let duration_s = duration.map(|d| d.as_secs_f64());
+    let program = std::env::current_exe()?;
+    let options = launch::Options { program, configuration: path, duration_s, out, hlog };
+    let report = launch::run(&configuration, &options)?;
+    print!("{report}");
+    if let Some(json) = json {
+        std::fs::write(json, serde_json::to_string_pretty(&report)? + "\n")?;
+    }
+    Ok(if report.cut_short { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+fn process(path: PathBuf, duration: Option<Duration>, out: &std::path::Path) -> Outcome {
+    let configuration = read(&path, duration)?;
+    if let (None, pipeline::configuration::Source::Simulator) =
+        (configuration.run.duration_s, &configuration.main.source)
+    {
+        return Err("a simulated run has no end of its own: give --duration or run.duration_s".into());
+    }
+    println!("{}", process::run(&configuration, out)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn check(path: PathBuf) -> Outcome {
+    println!("{}", check::run(&path)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn stage<E: Into<Box<dyn Error>>>(
+    args: &StageArgs,
+    run: impl Fn(&Configuration, &Context) -> Result<(), E>,
+) -> Outcome {
+    let configuration = read(&args.configuration, args.duration)?;
+    run(&configuration, &context(&configuration, args)).map_err(Into::into)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn of_area(args: &AreaArgs, run: fn(&Configuration, usize, &Context) -> Result<(), TransportError>) -> Outcome {
+    stage::<Box<dyn Error>>(&args.stage, |configuration, context| {
+        let area = configuration.areas.iter().position(|area| area.name == args.area);
+        let area = area.ok_or_else(|| NoSuchArea(args.area.clone()))?;
+        Ok(run(configuration, area, context)?)
+    })
+}
+
+fn context(configuration: &Configuration, args: &StageArgs) -> Context {
+    Context {
+        domain: args.domain.clone(),
+        run_id: args.run_id,
+        epoch_ns: args.epoch_ns,
+        scheduling: launch::request(configuration.run.scheduling),
+    }
+}
+
+#[derive(Debug)]
+struct NoSuchArea(String);
+
+impl std::fmt::Display for NoSuchArea {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "the configuration has no area \"{}\"", self.0)
+    }
+}
+
+impl Error for NoSuchArea {}

@@ -147,7 +147,9 @@ impl So3Estimator {
         let found = registrar.solve().filter(Registration::is_observable);
         let timed_out = waited_s >= self.settings.registration_s;
         let running = match (found, self.settings.installation) {
-            (Some(found), _) if timed_out || found.largest_sigma() < GOOD_REGISTRATION => self.start(found, Flags::empty()),
+            (Some(found), _) if timed_out || found.largest_sigma() < GOOD_REGISTRATION => {
+                self.start(found, Flags::empty())
+            }
             (None, Some(installation)) if timed_out => {
                 let surveyed = Registration {
                     rotation: installation.rotation,
@@ -215,8 +217,11 @@ impl So3Estimator {
         };
         let triad = Matrix3::identity() * self.settings.grade.triad_variance();
         let covariance = rows * p * rows.transpose() + noise + triad;
-        rows.fixed_view_mut::<3, 3>(0, place::STATIC)
-            .copy_from(&if coasting { Matrix3::zeros() } else { Matrix3::identity() });
+        rows.fixed_view_mut::<3, 3>(0, place::STATIC).copy_from(&if coasting {
+            Matrix3::zeros()
+        } else {
+            Matrix3::identity()
+        });
         let dynamic_covariance = rows * p * rows.transpose() + noise;
         let static_covariance = p.fixed_view::<3, 3>(place::STATIC, place::STATIC) + triad;
 

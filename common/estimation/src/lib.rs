@@ -25,4 +25,6 @@ pub trait Estimator {
 pub trait Identifier {
     /// Takes a pair with the solution of the same sample number.
     fn step(&mut self, pair: &ImuPair, solution: &Solution) -> Option<FlexureParams>;
+    /// How often a gap made the window start anew.
+    fn restarted_windows(&self) -> u64;
 }

@@ -27,7 +27,8 @@ fn ship(t: f64) -> Rot<MainStart, Main> {
 fn sample(sequence: u64, time_ns: i64) -> ImuSample {
     let t = unit::seconds(time_ns);
     let dtheta = (ship(t - unit::seconds(T)).inverse() * ship(t)).log();
-    let mut sample = ImuSample { interval_ns: T, dtheta: dtheta.array(), dvel: [0.0, 0.0, 0.098], ..Default::default() };
+    let mut sample =
+        ImuSample { interval_ns: T, dtheta: dtheta.array(), dvel: [0.0, 0.0, 0.098], ..Default::default() };
     (sample.header.sequence, sample.header.time_ns) = (sequence, time_ns);
     sample
 }
@@ -147,13 +148,13 @@ fn short_holes_are_bridged_and_said() {
 
 #[test]
 fn a_long_hole_starts_a_new_epoch() {
-    let sub: Vec<_> =
-        sub_samples(1002, 0).into_iter().filter(|s| !(300..400).contains(&s.header.sequence)).collect();
+    let sub: Vec<_> = sub_samples(1002, 0).into_iter().filter(|s| !(300..400).contains(&s.header.sequence)).collect();
     let (pairs, _) = run(&main_samples(1000), &sub);
     assert_eq!(pairs.len(), 1000);
     let gaps: Vec<_> = pairs.iter().filter(|p| p.flags.contains(Flags::GAP)).map(|p| p.header.sequence).collect();
     assert_eq!(gaps, (300..400).collect::<Vec<_>>());
-    let epochs: Vec<_> = pairs.iter().filter(|p| p.flags.contains(Flags::NEW_EPOCH)).map(|p| p.header.sequence).collect();
+    let epochs: Vec<_> =
+        pairs.iter().filter(|p| p.flags.contains(Flags::NEW_EPOCH)).map(|p| p.header.sequence).collect();
     assert_eq!(epochs, [0, 400]);
 }
 

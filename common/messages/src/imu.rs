@@ -8,6 +8,9 @@ pub struct ImuSample {
     pub header: Header,
     /// The interval that the increments cover.
     pub interval_ns: i64,
+    /// How many samples of this unit the source had handed out before. A gap here says that the transport lost some, a gap in
+    /// the header's sequence that the unit did.
+    pub ordinal: u64,
     /// Angle increment, rad.
     pub dtheta: [f64; 3],
     /// Velocity increment by specific force, m/s.

@@ -16,7 +16,7 @@ macro_rules! layout {
 fn layouts_are_as_published() {
     assert_eq!(size_of::<Stamps>(), 48);
     assert_eq!(size_of::<Header>(), 80);
-    layout!(ImuSample, "deckflex/ImuSample/1", 144, header @ 0, interval_ns @ 80, dtheta @ 88, dvel @ 112, flags @ 136, unit @ 140);
+    layout!(ImuSample, "deckflex/ImuSample/1", 152, header @ 0, interval_ns @ 80, ordinal @ 88, dtheta @ 96, dvel @ 120, flags @ 144, unit @ 148);
     layout!(MainAttitude, "deckflex/MainAttitude/1", 136, q @ 80, sigma @ 112);
     layout!(ImuPair, "deckflex/ImuPair/1", 328, epoch @ 80, interval_ns @ 88, dtheta_m @ 96, dtheta_s @ 144, attitude_m @ 192,
         attitude_s @ 224, ins @ 256, ins_sigma @ 288, disturbance @ 312, area @ 320, flags @ 324);

@@ -28,16 +28,22 @@ pub enum Source {
     /// Simulated units.
     Simulated(Box<Simulator>),
     /// Recorded units.
-    Recorded(Recorded),
+    Recorded(Box<Recorded>),
 }
 
 /// Recordings of the main unit and of each area, merged by time.
 pub struct Recorded {
-    main: Recording,
-    areas: Vec<std::iter::Peekable<Recording>>,
+    main: Option<Recording>,
+    areas: Vec<Area>,
     next: Option<Row>,
     duration_ns: i64,
     begin_ns: Option<i64>,
+}
+
+/// The recording of one area.
+struct Area {
+    recording: Recording,
+    next: Option<Row>,
 }
 
 impl Source {
@@ -48,16 +54,16 @@ impl Source {
     pub fn open(configuration: &Configuration, run_id: u64) -> Result<Self, RecordingError> {
         match &configuration.main.source {
             Kind::Simulator => Ok(Self::Simulated(Box::new(Simulator::new(&configuration.scenario(run_id))))),
-            Kind::Csv(path) => Recorded::open(configuration, path, run_id).map(Self::Recorded),
+            Kind::Csv(_) => Recorded::open(configuration, run_id).map(|recorded| Self::Recorded(Box::new(recorded))),
         }
     }
 
     /// Fills in the next batch; `false` at the end of the run.
     pub fn next(&mut self, batch: &mut Batch) -> bool {
-        batch.sub.clear();
-        batch.truth.clear();
         match self {
             Self::Simulated(simulator) => simulator.step().is_some_and(|epoch| {
+                batch.sub.clear();
+                batch.truth.clear();
                 batch.main = epoch.main;
                 batch.attitude = Some(epoch.attitude);
                 batch.sub.extend_from_slice(&epoch.sub);
@@ -70,34 +76,52 @@ impl Source {
 }
 
 impl Recorded {
-    fn open(configuration: &Configuration, main: &Path, run_id: u64) -> Result<Self, RecordingError> {
+    /// Opens the recordings that the configuration names; sources of another kind give nothing.
+    ///
+    /// # Errors
+    /// A recording cannot be opened or its columns are not known.
+    pub fn open(configuration: &Configuration, run_id: u64) -> Result<Self, RecordingError> {
         let interval_ns = configuration.interval_ns();
         let open = |path: &Path, unit: usize| Recording::open(path, unit as u32, run_id, interval_ns);
         let mut areas = Vec::new();
         for (index, area) in configuration.areas.iter().enumerate() {
             if let Kind::Csv(path) = &area.source {
-                areas.push(open(path, 1 + index)?.peekable());
+                let mut recording = open(path, 1 + index)?;
+                let next = recording.next();
+                areas.push(Area { recording, next });
             }
         }
-        let mut main = open(main, 0)?;
-        let next = main.next();
+        let mut main = match &configuration.main.source {
+            Kind::Csv(path) => Some(open(path, 0)?),
+            Kind::Simulator => None,
+        };
+        let next = main.as_mut().and_then(Iterator::next);
         let duration_ns = configuration.run.duration_s.map_or(i64::MAX, nanoseconds);
         Ok(Self { main, areas, next, duration_ns, begin_ns: None })
     }
 
-    fn next(&mut self, batch: &mut Batch) -> bool {
+    /// How many rows of all recordings could not be read.
+    pub fn refused(&self) -> u64 {
+        let areas = self.areas.iter().map(|area| &area.recording);
+        self.main.iter().chain(areas).map(|recording| recording.counts().refused).sum()
+    }
+
+    /// Fills in the next batch; `false` at the end of the main recording or of the run's duration.
+    pub fn next(&mut self, batch: &mut Batch) -> bool {
+        batch.sub.clear();
         let Some(row) = self.next.take() else { return false };
         let time_ns = row.sample.header.time_ns;
         let begin_ns = *self.begin_ns.get_or_insert(time_ns);
         if time_ns.saturating_sub(begin_ns) > self.duration_ns {
             return false;
         }
-        self.next = self.main.next();
+        self.next = self.main.as_mut().and_then(Iterator::next);
         (batch.main, batch.attitude) = (row.sample, row.attitude);
         let until_ns = if self.next.is_some() { time_ns } else { time_ns.saturating_add(TAIL_NS) };
         for area in &mut self.areas {
-            while let Some(row) = area.next_if(|row| row.sample.header.time_ns <= until_ns) {
+            while let Some(row) = area.next.take_if(|row| row.sample.header.time_ns <= until_ns) {
                 batch.sub.push(row.sample);
+                area.next = area.recording.next();
             }
         }
         true

@@ -5,6 +5,8 @@ use frames::{Main, Nav, Rot, Sub, Vec3, unit};
 use messages::{Solution, Truth};
 use serde::Serialize;
 use std::collections::VecDeque;
+use std::io;
+use std::path::Path;
 
 /// Truths that wait for their solution: those of the algorithm's wait and of a silent unit.
 const WAITING: usize = 4096;
@@ -184,4 +186,16 @@ pub fn deformation_error(solution: &Solution, truth: &Truth) -> Vec3<Main> {
 pub fn deck_error(solution: &Solution, truth: &Truth) -> Vec3<Nav> {
     let real = Rot::<Nav, Main>::from_wxyz(truth.ship) * Rot::<Main, Sub>::from_wxyz(truth.q);
     (Rot::<Nav, Sub>::from_wxyz(solution.deck) * real.inverse()).log()
+}
+
+impl Summary {
+    /// Writes the figures as JSON.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        let mut text = serde_json::to_string_pretty(self)?;
+        text.push('\n');
+        std::fs::write(path, text)
+    }
 }

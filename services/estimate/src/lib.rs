@@ -1,1 +1,52 @@
-//! The estimator as a process.
+//! `deckflex estimate`: one solution a pair, valid or not.
+
+use messages::{Flags, FlexureParams, ImuPair, Solution, Stage, topic};
+use pipeline::configuration::Configuration;
+use pipeline::lane;
+use runtime::{Area, Context, Publisher, Sequence, Subscriber, TransportError, Waiter, monotonic_ns};
+use std::time::Duration;
+
+/// How long a sleep may last without data.
+const NAP: Duration = Duration::from_millis(200);
+
+/// Runs the stage of one area until its stream ends or a signal comes.
+///
+/// # Errors
+/// The transport or the operating system refuses.
+pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Result<(), TransportError> {
+    let name = configuration.areas[area].name.as_str();
+    let place = Area { index: area as u32, name };
+    let (stop, mut connection) = context.connect(Stage::Estimate, Some(place))?;
+    let node = &connection.node;
+    let pairs: Subscriber<ImuPair> = Subscriber::open(node, &topic::pair(name))?;
+    let parameters: Subscriber<FlexureParams> = Subscriber::open(node, &topic::parameters(name))?;
+    let solutions = Publisher::open(node, &topic::solution(name))?;
+    let mut estimator = lane::estimator(configuration, area);
+    let mut sequence = Sequence::default();
+    let beat = &mut connection.beat;
+    beat.ready()?;
+    let mut waiter = Waiter::new();
+    while !stop.requested() {
+        waiter.wait(&[&pairs], NAP)?;
+        while let Some(pair) = pairs.take()? {
+            if pair.header.is_end() {
+                solutions.publish(&Solution { header: pair.header, area: place.index, ..Solution::default() })?;
+                return beat.ended();
+            }
+            while let Some(set) = parameters.take()? {
+                estimator.offer(set);
+            }
+            let mut solution = estimator.step(&pair);
+            solution.header.stamps.solution_ns = monotonic_ns();
+            solutions.publish(&solution)?;
+            sequence.see(&pair.header);
+            beat.health.taken += 1;
+            beat.health.given += 1;
+            beat.health.lost = sequence.lost();
+            beat.health.late += u64::from(solution.flags.contains(Flags::LATE));
+            beat.handled(&pair.header);
+        }
+        beat.tick(monotonic_ns())?;
+    }
+    Ok(())
+}

@@ -223,7 +223,8 @@ impl So3 {
         let since = &mut self.since;
         since.by_bias += a * step.time_s;
         since.by_scale += a * by_scale(dtheta);
-        since.walk += (self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2)) * step.time_s + step.disturbance.powi(2);
+        since.walk +=
+            (self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2)) * step.time_s + step.disturbance.powi(2);
         since.stamps += change * change.transpose() * jitter;
         (self.a_m, self.a_s, self.rate_m) = (step.a_m, step.a_s, rate);
     }

@@ -186,7 +186,9 @@ impl Synchroniser {
                 self.main.rebase(0);
                 main_attitude = Rot::identity();
                 self.sub.rebase(sub.left);
-                if let Found::At(again) = interpolation::at(&self.sub.nodes, main.header.time_ns, self.near_ns(), self.ended) {
+                if let Found::At(again) =
+                    interpolation::at(&self.sub.nodes, main.header.time_ns, self.near_ns(), self.ended)
+                {
                     sub = again;
                 }
                 main.header.sequence
@@ -210,7 +212,11 @@ impl Synchroniser {
         let time_ns = main.header.time_ns;
         let mut pair = ImuPair {
             header: main.header,
-            interval_ns: self.previous_ns.map(|previous| time_ns - previous).filter(|&d| d > 0).unwrap_or(self.settings.interval_ns),
+            interval_ns: self
+                .previous_ns
+                .map(|previous| time_ns - previous)
+                .filter(|&d| d > 0)
+                .unwrap_or(self.settings.interval_ns),
             area: self.settings.area,
             flags,
             ..ImuPair::default()

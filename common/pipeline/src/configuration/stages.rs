@@ -103,8 +103,9 @@ struct IdentifierTable {
     period_s: f64,
     #[serde(deserialize_with = "quantity::lead_s")]
     lead_s: f64,
-    #[serde(deserialize_with = "quantity::window_s")]
-    minimum_s: f64,
+    /// By default 10 s, or the whole of a shorter window.
+    #[serde(deserialize_with = "minimum_s")]
+    minimum_s: Option<f64>,
     #[serde(deserialize_with = "quantity::dictionary")]
     dictionary: usize,
     #[serde(deserialize_with = "table::optional")]
@@ -113,8 +114,8 @@ struct IdentifierTable {
 
 impl Default for IdentifierTable {
     fn default() -> Self {
-        let IdentifierSettings { method: _, window_s, period_s, lead_s, minimum_s, dictionary } = Default::default();
-        Self { method: Method::Rvm, window_s, period_s, lead_s, minimum_s, dictionary, flexure: None }
+        let IdentifierSettings { window_s, period_s, lead_s, dictionary, .. } = Default::default();
+        Self { method: Method::Rvm, window_s, period_s, lead_s, minimum_s: None, dictionary, flexure: None }
     }
 }
 
@@ -144,6 +145,11 @@ pub(super) fn identifier<'de, D: Deserializer<'de>>(deserializer: D) -> Result<I
             sigma: f.sigma_arcsec[i],
         })),
     };
-    let IdentifierTable { window_s, period_s, lead_s, minimum_s, dictionary, .. } = table;
+    let IdentifierTable { window_s, period_s, lead_s, dictionary, .. } = table;
+    let minimum_s = table.minimum_s.unwrap_or(IdentifierSettings::default().minimum_s.min(window_s));
     Ok(IdentifierSettings { method, window_s, period_s, lead_s, minimum_s, dictionary })
+}
+
+fn minimum_s<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    quantity::window_s(deserializer).map(Some)
 }

@@ -160,7 +160,7 @@ impl Recording {
         let dtheta = columns.gyro.increment(cells.gyro, interval);
         let attitude = cells.attitude.filter(|_| self.unit == 0);
         Row {
-            sample: ImuSample { header, interval_ns, dtheta, dvel, flags, unit: self.unit },
+            sample: ImuSample { header, interval_ns, dtheta, dvel, flags, unit: self.unit, ordinal: 0 },
             attitude: attitude.map(|c| MainAttitude { header, q: c.quaternion(), sigma: [0.0; 3] }),
         }
     }

@@ -33,7 +33,13 @@ fn carried(error: &ErrorState) -> So3 {
         let a_m = ship(t);
         let a_s = a_m.relabel::<SubStart, Main>() * installation();
         so3.coast(DT);
-        so3.advance(&Increment { a_m, a_s, dtheta_m: (ship(t - DT).inverse() * a_m).log(), time_s: DT, disturbance: 0.0 });
+        so3.advance(&Increment {
+            a_m,
+            a_s,
+            dtheta_m: (ship(t - DT).inverse() * a_m).log(),
+            time_s: DT,
+            disturbance: 0.0,
+        });
     }
     so3
 }
@@ -96,7 +102,13 @@ fn residual_vanishes_at_the_truth() {
         let t = k as f64 * DT;
         let a_m = ship(t);
         let a_s = a_m.relabel::<SubStart, Main>() * installation();
-        so3.advance(&Increment { a_m, a_s, dtheta_m: (ship(t - DT).inverse() * a_m).log(), time_s: DT, disturbance: 0.0 });
+        so3.advance(&Increment {
+            a_m,
+            a_s,
+            dtheta_m: (ship(t - DT).inverse() * a_m).log(),
+            time_s: DT,
+            disturbance: 0.0,
+        });
         assert!(so3.observe().residual.amax() < 1e-13);
     }
 }
@@ -116,7 +128,10 @@ fn errors_of_scale_and_bias_turn_the_constant_as_the_transition_says() {
         let true_turn = (ship(t - DT).inverse() * ship(t)).log();
         let felt_turn = true_turn + bias * DT + Vec3::from_column(symmetric(&scale) * true_turn.column());
         felt = felt * Rot::<Main, Main>::exp(felt_turn);
-        let a_s = installation().inverse().relabel::<SubStart, Main>() * start.relabel::<Main, MainStart>() * ship(t) * installation();
+        let a_s = installation().inverse().relabel::<SubStart, Main>()
+            * start.relabel::<Main, MainStart>()
+            * ship(t)
+            * installation();
         so3.advance(&Increment { a_m: felt, a_s, dtheta_m: felt_turn, time_s: DT, disturbance: 0.0 });
     }
     let error = (so3.deformation() * installation().inverse()).log().norm();
@@ -147,7 +162,10 @@ fn a_new_epoch_keeps_the_deformation_and_its_error() {
     assert!((so3.deformation() * so3.predicted().inverse()).log().norm() < 1e-14);
     let rows = so3.deformation_rows() * transition;
     let by_static = rows.fixed_view::<3, 3>(0, place::STATIC);
-    assert!((by_static + Matrix3::identity()).norm() < 1e-12, "an error of the static part is one of the deformation: {by_static}");
+    assert!(
+        (by_static + Matrix3::identity()).norm() < 1e-12,
+        "an error of the static part is one of the deformation: {by_static}"
+    );
     assert!(so3.observe().residual.amax() < 1e-14);
 }
 

@@ -1,0 +1,105 @@
+//! The relative attitude of a window, rebuilt with one constant.
+//!
+//! `A_m C_s^m = N A_s` and `dN/dt = [A_m drift x] N`: with `N` known at one instant, the gyros' attitudes give `C_s^m` at all
+//! others. The whole window is rebuilt from the latest constant, since what the filter published earlier had worse ones.
+
+use super::autocovariance::detrend;
+use super::window::Point;
+use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
+use messages::Solution;
+
+/// What ties the two gyro attitudes together at one instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anchor {
+    /// The instant, data time in ns.
+    pub time_ns: i64,
+    /// The constant `N` at the instant.
+    pub constant: Rot<MainStart, SubStart>,
+    /// Relative gyro bias that makes it drift, rad/s.
+    pub drift: Vec3<Main>,
+    /// Static part `S` of the deformation.
+    pub fixed: Rot<Main, Sub>,
+}
+
+impl Anchor {
+    /// The anchor of a solution; `None` if it is not finite.
+    pub fn of(solution: &Solution) -> Option<Self> {
+        let drift = Vec3::from(solution.drift);
+        Some(Self {
+            time_ns: solution.header.time_ns,
+            constant: Rot::from_quaternion(solution.constant)?,
+            drift: drift.is_finite().then_some(drift)?,
+            fixed: Rot::from_quaternion(solution.static_q)?,
+        })
+    }
+
+    /// The constant at each point; `None` if no point stands at the anchor's instant.
+    fn constants(&self, points: &[Point]) -> Option<Vec<Rot<MainStart, SubStart>>> {
+        let here = points.binary_search_by_key(&self.time_ns, |point| point.time_ns).ok()?;
+        let mut constants = vec![self.constant; points.len()];
+        for j in here + 1..points.len() {
+            constants[j] = (self.turn(&points[j - 1], &points[j]) * constants[j - 1]).normalised();
+        }
+        for j in (0..here).rev() {
+            constants[j] = (self.turn(&points[j], &points[j + 1]).inverse() * constants[j + 1]).normalised();
+        }
+        Some(constants)
+    }
+
+    /// By what the drift turns the constant from one point to the next, to second order in the step.
+    fn turn(&self, from: &Point, to: &Point) -> Rot<MainStart, MainStart> {
+        let half = unit::seconds(to.time_ns - from.time_ns) / 2.0;
+        Rot::exp((from.attitude_m * self.drift + to.attitude_m * self.drift) * half)
+    }
+}
+
+/// The rate of the deformation over a window.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// Mean rates between neighbouring points per axis of m, linear trend removed, rad/s.
+    pub rates: [Vec<f64>; 3],
+    /// Distance of the points, s.
+    pub step_s: f64,
+    /// Sum of the variances of the axes, rad^2/s^2.
+    pub variance: f64,
+    /// The anchor, carried to the last point.
+    pub end: Anchor,
+}
+
+impl Chain {
+    /// Rebuilds the window; `None` if the anchor's instant is not in it, there are under three points, or a number is not finite.
+    pub fn rebuild(points: &[Point], anchor: &Anchor) -> Option<Self> {
+        if points.len() < 3 {
+            return None;
+        }
+        let constants = anchor.constants(points)?;
+        let angle = |(point, constant): (&Point, &Rot<MainStart, SubStart>)| {
+            let total: Rot<Main, Sub> = point.attitude_m.inverse() * *constant * point.attitude_s;
+            (total * anchor.fixed.inverse()).log()
+        };
+        let angles: Vec<Vec3<Main>> = points.iter().zip(&constants).map(angle).collect();
+        let step_s = typical_step(points)?;
+        let mut rates: [Vec<f64>; 3] = Default::default();
+        for (times, pair) in points.windows(2).zip(angles.windows(2)) {
+            let step = unit::seconds(times[1].time_ns - times[0].time_ns);
+            // Lost points are filled with the mean rate, so that a lag stays a number of steps.
+            let steps = (step / step_s).round().max(1.0) as usize;
+            let rate = (pair[1] - pair[0]) / step;
+            for (axis, value) in rate.array().into_iter().enumerate() {
+                rates[axis].extend(std::iter::repeat_n(value, steps));
+            }
+        }
+        rates.iter_mut().for_each(|axis| detrend(axis));
+        let variance = rates.iter().flatten().map(|y| y * y).sum::<f64>() / rates[0].len() as f64;
+        let end = Anchor { time_ns: points.last()?.time_ns, constant: *constants.last()?, ..*anchor };
+        variance.is_finite().then_some(Self { rates, step_s, variance, end })
+    }
+}
+
+/// Median distance of the points, s.
+fn typical_step(points: &[Point]) -> Option<f64> {
+    let mut steps: Vec<i64> = points.windows(2).map(|pair| pair[1].time_ns - pair[0].time_ns).collect();
+    let middle = steps.len() / 2;
+    let step = *steps.select_nth_unstable(middle).1;
+    (step > 0).then(|| unit::seconds(step))
+}

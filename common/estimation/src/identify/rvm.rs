@@ -1,0 +1,87 @@
+use super::Settings;
+use super::axis::{Analysis, Identified};
+use super::chain::{Anchor, Chain};
+use super::safety::safe;
+use super::window::Window;
+use crate::Identifier;
+use crate::flexure::Flexure;
+use frames::unit;
+use messages::{FlexureParams, Header, ImuPair, Solution, Stamps};
+
+/// Windows up to this length are guarded against a worse constant, s.
+const GUARDED_S: f64 = 120.0;
+/// By how much the variance may grow before a re-built window is thought to be worse.
+const TOLERATED: f64 = 1.05;
+
+/// The slow identifier of paper 000, a relevance vector machine, with its data rebuilt and its result made safe.
+#[derive(Clone, Debug)]
+pub struct Rvm {
+    settings: Settings,
+    window: Window,
+    kept: Option<Anchor>,
+}
+
+impl Rvm {
+    /// An identifier that has seen nothing.
+    pub fn new(settings: Settings) -> Self {
+        Self { settings, window: Window::new(&settings), kept: None }
+    }
+
+    /// The window rebuilt with the latest constant, or with the one kept before if the latest makes early data rougher.
+    fn chain(&mut self, latest: &Anchor) -> Option<Chain> {
+        let guarded = self.window.length_s() <= GUARDED_S;
+        let points = self.window.points();
+        let chain = Chain::rebuild(points, latest)?;
+        if !guarded {
+            return Some(chain);
+        }
+        let earlier = self.kept.as_ref().and_then(|kept| Chain::rebuild(points, kept));
+        match earlier {
+            Some(earlier) if chain.variance > TOLERATED * earlier.variance => Some(earlier),
+            _ => Some(chain),
+        }
+    }
+
+    fn identify(&self, chain: &Chain) -> Option<[Identified; 3]> {
+        let analysis = Analysis::new(chain.rates[0].len(), chain.step_s, self.settings.dictionary, true);
+        let [x, y, z] = &chain.rates;
+        Some([analysis.identify(x)?, analysis.identify(y)?, analysis.identify(z)?])
+    }
+}
+
+impl Identifier for Rvm {
+    fn step(&mut self, pair: &ImuPair, solution: &Solution) -> Option<FlexureParams> {
+        let restarted = self.window.restarted();
+        let due = self.window.take(pair, solution);
+        if self.window.restarted() != restarted {
+            self.kept = None;
+        }
+        if !due {
+            return None;
+        }
+        let chain = self.chain(&Anchor::of(solution)?)?;
+        self.kept = Some(chain.end);
+        let axes = self.identify(&chain)?;
+        let length_s = self.window.length_s();
+        let models: [Flexure; 3] = axes.map(|axis| safe(&axis, length_s));
+        let points = self.window.points();
+        Some(FlexureParams {
+            header: Header { stamps: Stamps::default(), ..pair.header },
+            id: pair.header.sequence,
+            window_begin_ns: points.first()?.time_ns,
+            effective_from_ns: pair.header.time_ns + unit::nanoseconds(self.settings.lead_s),
+            mu: models.map(|model| model.mu),
+            b: models.map(|model| model.b),
+            sigma: models.map(|model| model.sigma),
+            ln_mu_sd: axes.map(|axis| axis.ln_mu_sd),
+            ln_b_sd: axes.map(|axis| axis.ln_b_sd),
+            ln_sigma_sd: axes.map(|axis| axis.ln_sigma_sd),
+            points: points.len() as u32,
+            area: self.settings.area,
+        })
+    }
+
+    fn restarted_windows(&self) -> u64 {
+        self.window.restarted()
+    }
+}

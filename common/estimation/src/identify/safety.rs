@@ -1,0 +1,77 @@
+//! What a filter may safely use.
+//!
+//! A filter that trusts too stiff a model (b too large, sigma or the density Q too small) is confidently wrong; one with too
+//! wide a sigma at the same Q loses nothing that can be measured. So a model near critical damping gets twice its sigma at the
+//! same Q, `b' = mu' = (Q / 4 sigma'^2)^(1/3)`; one that oscillates keeps b and mu and gets 1.15 sigma.
+//!
+//! A window of up to [`SHORT_S`] does not show a flexure whose time is that long: measured on one of 1/e time 30 s, windows of
+//! 20 to 120 s give b three to six times too large, while Q is right to 15 to 30 % from 60 s on. So a short window's b is held
+//! below [`SLOW`], its Q (sigma, where it oscillates) is raised by one standard deviation, and it must show the oscillation by
+//! two standard deviations of `ln mu` to be believed.
+
+use super::axis::Identified;
+use crate::flexure::Flexure;
+
+/// Windows up to this length are short, s.
+pub const SHORT_S: f64 = 120.0;
+/// Largest natural frequency of a short window near critical damping, rad/s.
+pub const SLOW: f64 = 0.08;
+/// The largest `mu / b` of a model that oscillates.
+const OSCILLATES: f64 = 0.5;
+/// By how much the sigma of an oscillation is raised at least.
+const WIDER: f64 = 1.15;
+
+/// The parameters that a filter gets from a window of `length_s`.
+pub fn safe(identified: &Identified, length_s: f64) -> Flexure {
+    let Flexure { mu, b, sigma } = identified.flexure;
+    let density = identified.flexure.density();
+    let short = length_s <= SHORT_S;
+    let doubt = |sd: f64| if short { sd.exp() } else { 1.0 };
+    if mu / b * doubt(2.0 * identified.ln_mu_sd) <= OSCILLATES {
+        return Flexure { mu, b, sigma: sigma * doubt(identified.ln_sigma_sd).max(WIDER) };
+    }
+    // No less than what an oscillation of the same size would get, so that doubt about the damping never takes density away.
+    let density = if short { density * doubt(identified.ln_density_sd).max(WIDER * WIDER) } else { density };
+    let doubled = (density / (16.0 * sigma * sigma)).cbrt();
+    let b = if short { doubled.min(SLOW) } else { doubled };
+    Flexure { mu: b, b, sigma: (density / (4.0 * b * b * b)).sqrt() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn identified(mu: f64, b: f64) -> Identified {
+        let flexure = Flexure { mu, b, sigma: 1e-3 };
+        Identified { flexure, ln_mu_sd: 0.2, ln_b_sd: 0.2, ln_sigma_sd: 0.3, ln_density_sd: 0.1 }
+    }
+
+    #[test]
+    fn near_critical_damping_sigma_doubles_at_the_same_density() {
+        for (mu, b) in [(0.2, 0.2), (0.6, 0.3), (0.11, 0.2)] {
+            let before = identified(mu, b);
+            let after = safe(&before, 300.0);
+            assert!((after.sigma / before.flexure.sigma - 2.0).abs() < 1e-12);
+            assert!((after.density() / before.flexure.density() - 1.0).abs() < 1e-12);
+            assert_eq!(after.mu, after.b);
+        }
+    }
+
+    #[test]
+    fn an_oscillation_keeps_its_frequency() {
+        let (before, after) = (identified(0.1, 0.6), safe(&identified(0.1, 0.6), 300.0));
+        assert_eq!((after.mu, after.b), (before.flexure.mu, before.flexure.b));
+        assert!((after.sigma / before.flexure.sigma - 1.15).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_short_window_is_never_stiffer_or_quieter_than_a_long_one() {
+        for (mu, b) in [(0.2, 0.2), (0.6, 0.3), (0.22, 0.5), (0.1, 0.6), (2.0, 5.0)] {
+            let (short, long) = (safe(&identified(mu, b), 60.0), safe(&identified(mu, b), 300.0));
+            assert!(
+                short.sigma > long.sigma && short.b <= long.b && short.density() > 0.999_999 * long.density(),
+                "{mu} {b}"
+            );
+        }
+    }
+}

@@ -1,0 +1,425 @@
+//! What the launcher hears of its set: solutions, parameters, truth and health; latencies and files come of it.
+
+use crate::report::{AreaRow, Report, StageRow};
+use crate::set::Role;
+use crate::{LaunchError, Options};
+use messages::{Flags, FlexureParams, Health, Scheduling, Solution, Stage, State, Truth, topic};
+use pipeline::configuration::{Configuration, Source};
+use pipeline::solution_file::SolutionFile;
+use pipeline::summary::{Figures, Summary};
+use runtime::{IntervalLog, Latency, Node, Sequence, Subscriber, TransportError, Wake};
+use std::collections::HashMap;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
+
+/// Length of an interval of the latency logs.
+const LOG_INTERVAL: Duration = Duration::from_secs(10);
+
+/// The launcher's readers in one domain.
+pub struct Ports {
+    areas: Vec<AreaPorts>,
+    health: Vec<(Role, Subscriber<Health>)>,
+}
+
+struct AreaPorts {
+    solutions: Subscriber<Solution>,
+    parameters: Subscriber<FlexureParams>,
+    truth: Subscriber<Truth>,
+}
+
+impl Ports {
+    /// What the launcher waits for.
+    pub fn wakes(&self) -> Vec<&dyn Wake> {
+        self.areas.iter().map(|area| &area.solutions as &dyn Wake).collect()
+    }
+}
+
+/// Everything that is known of the run, kept over restarts and new domains.
+pub struct Collector {
+    areas: Vec<AreaRecord>,
+    health: HashMap<Role, Counted>,
+    source: Role,
+    source_latency: Recorded,
+    out: Option<PathBuf>,
+    cut_short: bool,
+}
+
+struct AreaRecord {
+    name: String,
+    figures: Figures,
+    file: Option<(PathBuf, SolutionFile<BufWriter<File>>)>,
+    sequence: Sequence,
+    received: u64,
+    ended: bool,
+    parameters: u64,
+    late: u64,
+    first_parameters_s: Option<f64>,
+    begin_ns: Option<i64>,
+    last: Option<Solution>,
+    synchronise: Recorded,
+    wait: Recorded,
+    estimate: Recorded,
+    identify: Recorded,
+    end_to_end: Recorded,
+}
+
+/// A stage's counters, summed over the processes that carried it out.
+#[derive(Clone, Copy, Default)]
+struct Counted {
+    past: Totals,
+    now: Health,
+    seen: bool,
+}
+
+#[derive(Clone, Copy, Default)]
+struct Totals {
+    taken: u64,
+    given: u64,
+    lost: u64,
+}
+
+/// A latency, whole and by intervals.
+struct Recorded {
+    whole: Latency,
+    log: Option<(IntervalLog<BufWriter<File>>, Latency, Instant, Instant)>,
+}
+
+impl Recorded {
+    fn new(folder: Option<&Path>, name: &str) -> Result<Self, LaunchError> {
+        let log = match folder {
+            None => None,
+            Some(folder) => {
+                let path = folder.join(format!("{name}.hlog"));
+                let file = File::create(&path).map_err(LaunchError::output(&path))?;
+                let log = IntervalLog::begin(
+                    BufWriter::new(file),
+                    SystemTime::now(),
+                    &format!("deckflex {name}, nanoseconds"),
+                )?;
+                let now = Instant::now();
+                Some((log, Latency::new(), now, now))
+            }
+        };
+        Ok(Self { whole: Latency::new(), log })
+    }
+
+    fn record(&mut self, from_ns: i64, to_ns: i64) -> Result<(), TransportError> {
+        if from_ns == 0 || to_ns == 0 {
+            return Ok(());
+        }
+        self.whole.record(to_ns - from_ns);
+        if let Some((_, interval, _, since)) = &mut self.log {
+            interval.record(to_ns - from_ns);
+            if since.elapsed() >= LOG_INTERVAL {
+                return self.rotate();
+            }
+        }
+        Ok(())
+    }
+
+    fn rotate(&mut self) -> Result<(), TransportError> {
+        if let Some((log, interval, start, since)) = &mut self.log {
+            log.write("latency", since.duration_since(*start), since.elapsed(), interval)?;
+            interval.clear();
+            *since = Instant::now();
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<(), TransportError> {
+        self.rotate()?;
+        if let Some((log, ..)) = self.log.take() {
+            log.finish()?;
+        }
+        Ok(())
+    }
+}
+
+impl Collector {
+    /// Creates the output files that the user asked for.
+    pub fn new(configuration: &Configuration, options: &Options) -> Result<Self, LaunchError> {
+        for folder in options.out.iter().chain(&options.hlog) {
+            std::fs::create_dir_all(folder).map_err(LaunchError::output(folder))?;
+        }
+        let stage = match configuration.main.source {
+            Source::Simulator => Stage::Simulate,
+            Source::Csv(_) => Stage::Replay,
+        };
+        let hlog = options.hlog.as_deref();
+        let areas = configuration
+            .areas
+            .iter()
+            .map(|area| AreaRecord::new(area, configuration, options))
+            .collect::<Result<_, _>>()?;
+        Ok(Self {
+            areas,
+            health: HashMap::new(),
+            source: Role { stage, area: None },
+            source_latency: Recorded::new(hlog, stage.name())?,
+            out: options.out.clone(),
+            cut_short: false,
+        })
+    }
+
+    /// Opens the readers in a domain; of what the stages of an earlier domain said only the sums are kept.
+    pub fn connect(&mut self, node: &Node, configuration: &Configuration) -> Result<Ports, LaunchError> {
+        for counted in self.health.values_mut() {
+            counted.retire();
+        }
+        let mut ports = Ports { areas: Vec::new(), health: Vec::new() };
+        for (index, area) in configuration.areas.iter().enumerate() {
+            let name = area.name.as_str();
+            ports.areas.push(AreaPorts {
+                solutions: Subscriber::open(node, &topic::solution(name))?,
+                parameters: Subscriber::open(node, &topic::parameters(name))?,
+                truth: Subscriber::open(node, &topic::truth(name))?,
+            });
+            for stage in [Stage::Synchronise, Stage::Estimate, Stage::Identify] {
+                let health = Subscriber::open(node, &topic::health(stage, Some(name)))?;
+                ports.health.push((Role { stage, area: Some(index) }, health));
+            }
+        }
+        let health = Subscriber::open(node, &topic::health(self.source.stage, None))?;
+        ports.health.push((self.source, health));
+        Ok(ports)
+    }
+
+    /// Takes in everything that has come.
+    pub fn drain(&mut self, ports: &Ports) -> Result<(), LaunchError> {
+        for (role, port) in &ports.health {
+            while let Some(health) = port.take()? {
+                self.health.entry(*role).or_default().update(health);
+            }
+        }
+        for (index, (record, ports)) in self.areas.iter_mut().zip(&ports.areas).enumerate() {
+            while let Some(solution) = ports.solutions.take()? {
+                // a truth was published before the solution of its sample
+                while let Some(truth) = ports.truth.take()? {
+                    record.figures.truth(&truth);
+                }
+                if index == 0 && !solution.header.is_end() {
+                    let stamps = solution.header.stamps;
+                    self.source_latency.record(stamps.due_ns, stamps.source_ns)?;
+                }
+                record.solution(&solution)?;
+            }
+            while let Some(parameters) = ports.parameters.take()? {
+                record.parameters(&parameters)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether all of these stages are connected.
+    pub fn all_ready(&self, roles: impl Iterator<Item = Role>) -> bool {
+        let mut roles = roles;
+        roles.all(|role| self.health.get(&role).is_some_and(|counted| counted.seen))
+    }
+
+    /// Whether every fast stage that has spoken runs in the real-time class.
+    pub fn all_fifo(&self) -> bool {
+        let mut fast = self.health.iter().filter(|(role, counted)| role.stage != Stage::Identify && counted.seen);
+        fast.all(|(_, counted)| counted.now.scheduling == Scheduling::Fifo as u32)
+    }
+
+    /// Whether the stream of every area has come to its end mark.
+    pub fn streams_ended(&self) -> bool {
+        self.areas.iter().all(|area| area.ended)
+    }
+
+    /// Whether every stage has said its last word.
+    pub fn all_ended(&self) -> bool {
+        self.health.values().all(|counted| counted.now.state == State::Ended as u32)
+    }
+
+    /// Notes that the streams had to be given up before their end.
+    pub fn cut_short(&mut self) {
+        self.cut_short = true;
+    }
+
+    /// The last solution of each area.
+    pub fn latest(&self) -> impl Iterator<Item = (&str, Option<&Solution>)> {
+        self.areas.iter().map(|area| (area.name.as_str(), area.last.as_ref()))
+    }
+
+    /// Median end-to-end latency of the first area so far, microseconds.
+    pub fn median_us(&self) -> f64 {
+        self.areas[0].end_to_end.whole.summary().p50_us
+    }
+
+    /// Closes the files and gives the report.
+    pub fn finish(mut self, configuration: &Configuration, restarts: &[(Role, u64)]) -> Result<Report, LaunchError> {
+        let mut stages = vec![self.row(self.source, restarts, "", &self.source_latency.whole, 0.0)];
+        for (index, area) in self.areas.iter().enumerate() {
+            let role = |stage| Role { stage, area: Some(index) };
+            let wait_us = area.wait.whole.summary().p50_us;
+            let name = area.name.as_str();
+            stages.push(self.row(role(Stage::Synchronise), restarts, name, &area.synchronise.whole, wait_us));
+            stages.push(self.row(role(Stage::Estimate), restarts, name, &area.estimate.whole, 0.0));
+            stages.push(self.row(role(Stage::Identify), restarts, name, &area.identify.whole, 0.0));
+        }
+        let scheduling = if self.all_fifo() { Scheduling::Fifo } else { Scheduling::Normal };
+        let end_to_end: Vec<AreaRow> = self.areas.iter().map(AreaRecord::row).collect();
+        let missed = |role: &Role| self.health.get(role).map_or(0, |counted| counted.now.missing);
+        let missing =
+            (0..self.areas.len()).map(|area| missed(&Role { stage: Stage::Synchronise, area: Some(area) })).sum();
+        self.source_latency.finish()?;
+        for area in &mut self.areas {
+            area.finish()?;
+        }
+        if let Some(folder) = &self.out {
+            let path = folder.join("summary.json");
+            let summary = Summary { areas: self.areas.iter().map(|area| area.figures.summary()).collect() };
+            summary.write(&path).map_err(LaunchError::output(&path))?;
+        }
+        Ok(Report {
+            pairs: end_to_end.iter().map(|area| area.pairs).min().unwrap_or(0),
+            parameters: end_to_end.iter().map(|area| area.parameters).sum(),
+            late_parameters: end_to_end.iter().map(|area| area.late_parameters).sum(),
+            scheduling: scheduling.name(),
+            rate_hz: configuration.rate_hz,
+            missing_samples: missing,
+            cut_short: self.cut_short,
+            stages,
+            end_to_end,
+        })
+    }
+
+    fn row(&self, role: Role, restarts: &[(Role, u64)], area: &str, latency: &Latency, wait_us: f64) -> StageRow {
+        let counted = self.health.get(&role).copied().unwrap_or_default();
+        let summary = latency.summary();
+        StageRow {
+            name: role.stage.name(),
+            area: area.to_owned(),
+            taken: counted.past.taken + counted.now.taken,
+            given: counted.past.given + counted.now.given,
+            lost: counted.past.lost + counted.now.lost,
+            restarts: restarts.iter().find(|(known, _)| *known == role).map_or(0, |(_, n)| *n),
+            overflow: counted.now.overflow,
+            p50_us: summary.p50_us,
+            p90_us: summary.p90_us,
+            p99_us: summary.p99_us,
+            p999_us: summary.p999_us,
+            max_us: summary.max_us,
+            wait_us,
+        }
+    }
+}
+
+impl Counted {
+    fn update(&mut self, health: Health) {
+        if self.now.pid != health.pid {
+            self.retire();
+        }
+        (self.now, self.seen) = (health, true);
+    }
+
+    fn retire(&mut self) {
+        self.past.taken += self.now.taken;
+        self.past.given += self.now.given;
+        self.past.lost += self.now.lost;
+        *self = Self { past: self.past, ..Self::default() };
+    }
+}
+
+impl AreaRecord {
+    fn new(
+        area: &pipeline::configuration::Area,
+        configuration: &Configuration,
+        options: &Options,
+    ) -> Result<Self, LaunchError> {
+        let name = area.name.as_str();
+        let file = match &options.out {
+            None => None,
+            Some(folder) => {
+                let path = pipeline::solution_file::path(folder, name);
+                let file = SolutionFile::create(folder, name).map_err(LaunchError::output(&path))?;
+                Some((path, file))
+            }
+        };
+        let recorded = |what: &str| Recorded::new(options.hlog.as_deref(), &format!("{what}_{name}"));
+        Ok(Self {
+            name: name.to_owned(),
+            figures: Figures::new(name, configuration.settle_s),
+            file,
+            sequence: Sequence::default(),
+            received: 0,
+            ended: false,
+            parameters: 0,
+            late: 0,
+            first_parameters_s: None,
+            begin_ns: None,
+            last: None,
+            synchronise: recorded("synchronise")?,
+            wait: recorded("wait")?,
+            estimate: recorded("estimate")?,
+            identify: recorded("identify")?,
+            end_to_end: recorded("end_to_end")?,
+        })
+    }
+
+    fn solution(&mut self, solution: &Solution) -> Result<(), LaunchError> {
+        if solution.header.is_end() {
+            self.ended = true;
+            return Ok(());
+        }
+        self.sequence.see(&solution.header);
+        self.received += 1;
+        self.begin_ns.get_or_insert(solution.header.time_ns);
+        self.late += u64::from(solution.flags.contains(Flags::LATE));
+        self.figures.solution(solution);
+        let stamps = solution.header.stamps;
+        self.wait.record(stamps.source_ns, stamps.complete_ns)?;
+        self.synchronise.record(stamps.complete_ns, stamps.pair_ns)?;
+        self.estimate.record(stamps.pair_ns, stamps.solution_ns)?;
+        self.end_to_end.record(stamps.due_ns, stamps.solution_ns)?;
+        if let Some((path, file)) = &mut self.file {
+            file.write(solution).map_err(LaunchError::output(path.as_path()))?;
+        }
+        self.last = Some(*solution);
+        Ok(())
+    }
+
+    fn parameters(&mut self, parameters: &FlexureParams) -> Result<(), LaunchError> {
+        self.parameters += 1;
+        let time_ns = parameters.header.time_ns;
+        let begin_ns = *self.begin_ns.get_or_insert(time_ns);
+        self.first_parameters_s.get_or_insert(frames::unit::seconds(time_ns - begin_ns));
+        let stamps = parameters.header.stamps;
+        self.identify.record(stamps.solution_ns, stamps.parameters_ns)?;
+        Ok(())
+    }
+
+    fn row(&self) -> AreaRow {
+        let summary = self.end_to_end.whole.summary();
+        AreaRow {
+            area: self.name.clone(),
+            pairs: self.received,
+            lost: self.sequence.lost(),
+            parameters: self.parameters,
+            late_parameters: self.late,
+            first_parameters_s: self.first_parameters_s,
+            p50_us: summary.p50_us,
+            p90_us: summary.p90_us,
+            p99_us: summary.p99_us,
+            p999_us: summary.p999_us,
+            max_us: summary.max_us,
+            wait_us: self.wait.whole.summary().p50_us,
+        }
+    }
+
+    fn finish(&mut self) -> Result<(), LaunchError> {
+        for recorded in
+            [&mut self.synchronise, &mut self.wait, &mut self.estimate, &mut self.identify, &mut self.end_to_end]
+        {
+            recorded.finish()?;
+        }
+        if let Some((path, file)) = self.file.take() {
+            let mut out = file.finish().map_err(LaunchError::output(&path))?;
+            out.flush().map_err(LaunchError::output(&path))?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,150 @@
+//! The table at the end of a launch, and the same as JSON.
+
+use serde::Serialize;
+use std::fmt;
+
+/// What a launch measured.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// Solutions of the area that has the fewest; there is one a pair.
+    pub pairs: u64,
+    /// Parameter sets of all areas.
+    pub parameters: u64,
+    /// Those that came after the time from which they were to be in force.
+    pub late_parameters: u64,
+    /// The scheduling class that all fast stages really obtained.
+    pub scheduling: &'static str,
+    /// Samples a second.
+    pub rate_hz: f64,
+    /// Samples that were missing in the units' own streams.
+    pub missing_samples: u64,
+    /// Whether the streams had to be given up before their end marks.
+    pub cut_short: bool,
+    /// One row a stage and area.
+    pub stages: Vec<StageRow>,
+    /// One row an area: from the sample's due time to the published solution.
+    pub end_to_end: Vec<AreaRow>,
+}
+
+/// Counts and latency of a stage: from the moment its last input was published to its own output.
+#[derive(Clone, Debug, Serialize)]
+pub struct StageRow {
+    /// Name of the stage.
+    pub name: &'static str,
+    /// Name of the area, empty for a source.
+    pub area: String,
+    /// Messages taken in.
+    #[serde(rename = "in")]
+    pub taken: u64,
+    /// Messages given out.
+    #[serde(rename = "out")]
+    pub given: u64,
+    /// Messages lost before the stage.
+    pub lost: u64,
+    /// How often it was started again.
+    pub restarts: u64,
+    /// Messages dropped inside the stage.
+    pub overflow: u64,
+    /// Median latency.
+    pub p50_us: f64,
+    /// What one in 10 exceeds.
+    pub p90_us: f64,
+    /// What one in 100 exceeds.
+    pub p99_us: f64,
+    /// What one in 1000 exceeds.
+    pub p999_us: f64,
+    /// The largest.
+    pub max_us: f64,
+    /// Median of the time that the algorithm has to wait for later samples.
+    pub wait_us: f64,
+}
+
+/// The whole way of one area.
+#[derive(Clone, Debug, Serialize)]
+pub struct AreaRow {
+    /// Name of the area.
+    pub area: String,
+    /// Solutions received.
+    pub pairs: u64,
+    /// Solutions missing in their sequence.
+    pub lost: u64,
+    /// Parameter sets received.
+    pub parameters: u64,
+    /// Solutions that say that their parameters came late.
+    pub late_parameters: u64,
+    /// Data time of the first parameter set after the first solution, s.
+    pub first_parameters_s: Option<f64>,
+    /// Median latency.
+    pub p50_us: f64,
+    /// What one in 10 exceeds.
+    pub p90_us: f64,
+    /// What one in 100 exceeds.
+    pub p99_us: f64,
+    /// What one in 1000 exceeds.
+    pub p999_us: f64,
+    /// The largest.
+    pub max_us: f64,
+    /// Median of the algorithm's wait.
+    pub wait_us: f64,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "{:<12} {:<12} {:>8} {:>8} {:>5} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}",
+            "stage",
+            "area",
+            "in",
+            "out",
+            "lost",
+            "restarts",
+            "wait us",
+            "p50 us",
+            "p90 us",
+            "p99 us",
+            "p99.9 us",
+            "max us"
+        )?;
+        for row in &self.stages {
+            let tail = [row.wait_us, row.p50_us, row.p90_us, row.p99_us, row.p999_us, row.max_us];
+            write!(
+                f,
+                "{:<12} {:<12} {:>8} {:>8} {:>5} {:>8}",
+                row.name, row.area, row.taken, row.given, row.lost, row.restarts
+            )?;
+            figures(f, tail)?;
+        }
+        for row in &self.end_to_end {
+            let tail = [row.wait_us, row.p50_us, row.p90_us, row.p99_us, row.p999_us, row.max_us];
+            write!(
+                f,
+                "{:<12} {:<12} {:>8} {:>8} {:>5} {:>8}",
+                "end to end", row.area, row.pairs, row.pairs, row.lost, ""
+            )?;
+            figures(f, tail)?;
+        }
+        for row in &self.end_to_end {
+            let first = row.first_parameters_s.map_or("none".to_owned(), |s| format!("first after {s:.1} s of data"));
+            writeln!(
+                f,
+                "area {}: {} parameter sets ({first}), {} late",
+                row.area, row.parameters, row.late_parameters
+            )?;
+        }
+        writeln!(
+            f,
+            "scheduling obtained: {}; samples missing in the units' own streams: {}",
+            self.scheduling, self.missing_samples
+        )?;
+        if self.cut_short {
+            writeln!(f, "the streams did not end in time and were cut short")?;
+        }
+        Ok(())
+    }
+}
+
+fn figures(f: &mut fmt::Formatter<'_>, tail: [f64; 6]) -> fmt::Result {
+    tail.iter().try_for_each(|us| write!(f, " {us:>9.0}"))?;
+    writeln!(f)
+}
