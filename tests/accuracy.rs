@@ -29,6 +29,11 @@ impl Sink for Errors {
         self.truth = Some(*truth);
     }
 
+    fn parameters(&mut self, p: &messages::FlexureParams) {
+        if std::env::var("SHOW").is_ok() { let t = unit::seconds(p.header.time_ns); if t < 130.0 {
+            println!("t {t:6.1} mu {:.3?} b {:.3?} sigma {:.2?} Q {:.2?}", p.mu, p.b, p.sigma.map(|s| s / unit::ARCMIN), [0,1,2].map(|i| 4.0*p.mu[i]*(p.b[i]*p.sigma[i]).powi(2)*1e8)); } }
+    }
+
     fn solution(&mut self, solution: &Solution) {
         let truth = self.truth.as_ref().filter(|truth| truth.header.sequence == solution.header.sequence).unwrap();
         if !solution.is_valid() {
@@ -107,4 +112,22 @@ fn explore() {
         nees[1] += b.nees / n as f64 / 3.0;
     }
     println!("pooled {:.3?} told {:.3?} nees/3 {:.2?}", pooled[0].map(f64::sqrt), pooled[1].map(f64::sqrt), nees);
+}
+
+#[test]
+fn one() {
+    let seed = std::env::var("SEED").map_or(9, |s| s.parse().unwrap());
+    struct Show(Errors, f64);
+    impl Sink for Show {
+        fn truth(&mut self, t: &Truth) { self.0.truth(t) }
+        fn parameters(&mut self, p: &messages::FlexureParams) { self.0.parameters(p) }
+        fn solution(&mut self, s: &Solution) {
+            self.0.solution(s);
+            let t = unit::seconds(s.header.time_ns);
+            if t >= self.1 && t < 130.0 { self.1 += 5.0;
+                let e = deformation_error(s, self.0.truth.as_ref().unwrap()).array().map(|e| e / unit::ARCMIN);
+                println!("    {t:6.1} valid {} err {e:.2?} sigma {:.2?}", s.valid, [0,4,8].map(|i| s.covariance[i].sqrt()/unit::ARCMIN)); }
+        }
+    }
+    offline::run(&demo(seed), &mut Show(Errors::default(), 0.0)).unwrap();
 }

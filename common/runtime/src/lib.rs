@@ -47,7 +47,7 @@ pub use feed::{Delivery, Feed};
 pub use gap::Sequence;
 pub use latency::{IntervalLog, Latency, Summary};
 pub use node::Node;
-pub use port::{Publisher, Subscriber};
+pub use port::{Anchor, Publisher, Subscriber};
 pub use signal::{Stop, die_with_parent};
 pub use stage::{Area, Beat, Connection};
 pub use waiter::{Waiter, Wake};

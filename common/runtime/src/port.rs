@@ -130,6 +130,24 @@ impl<M: Message> Wake for Subscriber<M> {
     }
 }
 
+/// Keeps a topic in existence without reading or writing it.
+///
+/// A process that is killed while it CREATES a topic poisons the domain; one that is killed while it opens an existing topic does
+/// not. A launcher that anchors all topics before it starts the stages therefore survives their deaths at any time.
+pub struct Anchor<M: Message> {
+    _services: Services<M>,
+}
+
+impl<M: Message> Anchor<M> {
+    /// Creates the topic, or opens it.
+    ///
+    /// # Errors
+    /// If the topic has another type, or if the transport is poisoned.
+    pub fn open(node: &Node, topic: &Topic<M>) -> Result<Self, TransportError> {
+        persist(|| open(node, topic)).map(|_services| Self { _services })
+    }
+}
+
 fn failure(action: &'static str, topic: &str, reason: impl Debug) -> TransportError {
     TransportError::Port { action, topic: topic.to_owned(), reason: format!("{reason:?}") }
 }

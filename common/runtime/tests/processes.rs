@@ -3,7 +3,7 @@
 
 use messages::topic::{self, Topic};
 use messages::{Header, ImuSample};
-use runtime::{Domain, Node, Publisher, Sequence, Stop, Subscriber, Waiter, die_with_parent};
+use runtime::{Anchor, Domain, Node, Publisher, Sequence, Stop, Subscriber, Waiter, die_with_parent};
 use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
@@ -303,4 +303,20 @@ fn a_stage_does_not_outlive_its_parent() {
     parent.kill();
     let last = read(&reader, 1);
     assert_eq!(last[0].header.run_id, 1, "it stopped because it was asked to");
+}
+
+/// Without the anchor a kill in the middle of creating a topic poisons the domain sooner or later.
+#[test]
+fn anchored_topics_survive_kills_at_any_moment_of_the_start() {
+    let domain = Domain::create().unwrap();
+    let node = Node::open(&domain, "launcher").unwrap();
+    let _anchor = Anchor::open(&node, &imu()).unwrap();
+    for k in 0..60 {
+        let process = Process::start("endless writer", domain.root());
+        std::thread::sleep(Duration::from_micros(k * 7919 % 40_000));
+        process.kill();
+        let visitor = Node::open(&domain, "visitor").unwrap();
+        Subscriber::open(&visitor, &imu()).unwrap();
+        Publisher::open(&visitor, &imu()).unwrap();
+    }
 }
