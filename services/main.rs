@@ -112,7 +112,8 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
         || error.is::<check::CheckError>()
         || matches!(error.downcast_ref(), Some(process::ProcessError::Recording(_)))
         || matches!(error.downcast_ref(), Some(replay::ReplayError::Recording(_)))
-        || error.is::<NoSuchArea>();
+        || error.is::<NoSuchArea>()
+        || error.is::<Endless>();
     match (poisoned, unusable) {
         (true, _) => ExitCode::from(POISONED_EXIT_CODE),
         (_, true) => ExitCode::from(UNUSABLE),
@@ -136,9 +137,8 @@ fn launch(
     out: Option<PathBuf>,
 ) -> Outcome {
     let configuration = read(&path, duration)?;
-    // the recordings too, before any process starts
-    let found = check::run(&path)?;
-    found.suspicions().iter().for_each(|suspicion| eprintln!("deckflex: {suspicion}"));
+    // before any process starts
+    check_recordings(&path)?;
     let duration_s = duration.map(|d| d.as_secs_f64());
     let program = std::env::current_exe()?;
     let options = launch::Options { program, configuration: path, duration_s, out, hlog };
@@ -155,10 +155,18 @@ fn process(path: PathBuf, duration: Option<Duration>, out: &std::path::Path) -> 
     if let (None, pipeline::configuration::Source::Simulator) =
         (configuration.run.duration_s, &configuration.main.source)
     {
-        return Err("a simulated run has no end of its own: give --duration or run.duration_s".into());
+        return Err(Endless.into());
     }
+    check_recordings(&path)?;
     println!("{}", process::run(&configuration, out)?);
     Ok(ExitCode::SUCCESS)
+}
+
+/// Refuses recordings that cannot be used, and says what looks wrong about the others.
+fn check_recordings(path: &std::path::Path) -> Result<(), check::CheckError> {
+    let found = check::run(path)?;
+    found.suspicions().iter().for_each(|suspicion| eprintln!("deckflex: {suspicion}"));
+    Ok(())
 }
 
 fn check(path: PathBuf) -> Outcome {
@@ -202,3 +210,14 @@ impl std::fmt::Display for NoSuchArea {
 }
 
 impl Error for NoSuchArea {}
+
+#[derive(Debug)]
+struct Endless;
+
+impl std::fmt::Display for Endless {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("a simulated run has no end of its own: give --duration or run.duration_s")
+    }
+}
+
+impl Error for Endless {}

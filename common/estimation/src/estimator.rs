@@ -5,10 +5,10 @@ use crate::align::{Registrar, Registration};
 use crate::filter::{Kalman, Update, symmetrise};
 use crate::flexure::Flexure;
 use crate::matching::Matching;
-use crate::matching::so3::{Covariance, Grade, Increment, So3, place};
-use frames::{Main, MainStart, Nav, Rot, Sub, Vec3, unit};
+use crate::matching::so3::{Covariance, Grade, Increment, STATES, So3, place};
+use frames::{Main, MainStart, Nav, Rot, Sub, SubStart, Vec3, unit};
 use messages::{Flags, FlexureParams, ImuPair, Solution};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 use std::collections::VecDeque;
 
 /// A surveyed installation to fall back to.
@@ -57,6 +57,8 @@ const LEAST_GUESS: f64 = 1.0 * unit::ARCSEC;
 const RANGE: f64 = 1.96;
 /// A covariance beyond this (1 rad^2) says nothing of a rotation any more.
 const LOST: f64 = 1.0;
+/// Beyond this standard deviation (rad) the constant is not worth keeping.
+const BROKEN: f64 = 0.1;
 /// Parameter sets that wait for their time.
 const WAITING: usize = 8;
 
@@ -131,7 +133,8 @@ impl So3Estimator {
             self.params = self.waiting.pop_front();
         }
         if let (Some(params), Phase::Running(running)) = (&self.params, &mut self.phase) {
-            running.so3.set_flexure(model(params));
+            let least = self.settings.grade.least_flexure();
+            running.so3.set_flexure(model(params).map(|m| Flexure { sigma: m.sigma.max(least), ..m }));
         }
     }
 
@@ -189,6 +192,7 @@ impl So3Estimator {
             let trust = if seen.is_finite() { specified / (specified + seen) } else { 0.0 };
             bias[axis] = trust * from.bias.array()[axis];
             p[(place::BIAS + axis, place::BIAS + axis)] = specified * (1.0 - trust);
+            p[(place::WANDER + axis, place::WANDER + axis)] = grade.wander_variance();
         }
         let so3 = So3::new(grade, flexure, from.rotation, Vec3::from_column(bias));
         Running { so3, p, flags, last_ns: None, good: None, coasting: true }
@@ -208,10 +212,7 @@ impl So3Estimator {
         let coasting = flags.contains(Flags::COASTING);
         let deformation = if coasting { so3.predicted() } else { so3.deformation() };
         let (mut rows, noise) = if coasting {
-            let mut rows = nalgebra::SMatrix::<f64, 3, 24>::zeros();
-            rows.fixed_view_mut::<3, 3>(0, place::STATIC).fill_with_identity();
-            rows.fixed_view_mut::<3, 3>(0, place::FLEXURE).fill_with_identity();
-            (rows, Matrix3::zeros())
+            (So3::prediction_rows(), Matrix3::zeros())
         } else {
             (so3.deformation_rows(), so3.deformation_noise())
         };
@@ -232,6 +233,7 @@ impl So3Estimator {
         solution.dynamic = (deformation * so3.static_part().inverse()).log().array();
         solution.rate = so3.rate().array();
         solution.drift = so3.drift().array();
+        solution.scale = so3.scale();
         solution.covariance = row_major(&covariance);
         solution.static_covariance = row_major(&static_covariance);
         solution.dynamic_covariance = row_major(&dynamic_covariance);
@@ -251,6 +253,9 @@ impl So3Estimator {
 impl Estimator for So3Estimator {
     fn offer(&mut self, params: FlexureParams) {
         let known = |other: &FlexureParams| other.id == params.id;
+        if !model(&params).iter().all(Flexure::is_sound) {
+            return;
+        }
         if self.params.as_ref().is_some_and(known) || self.waiting.iter().any(|other| known(other)) {
             return;
         }
@@ -316,6 +321,9 @@ impl Running {
                 self.so3.advance(&Increment { a_m, a_s, dtheta_m, time_s, disturbance: pair.disturbance });
                 if due {
                     self.predict();
+                    if self.chain_is_broken() {
+                        self.start_epoch(a_m, a_s);
+                    }
                     let seen = self.so3.observe();
                     let error = Kalman.update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
                     self.so3.inject(&error);
@@ -323,13 +331,25 @@ impl Running {
             }
             _ => {
                 self.predict();
-                let transition = self.so3.start_epoch(a_m, a_s);
-                self.p = transition * self.p * transition.transpose();
-                symmetrise(&mut self.p);
+                self.start_epoch(a_m, a_s);
             }
         }
         self.good = Some(Good { epoch: pair.epoch, time_ns, a_m });
         self.is_sound()
+    }
+
+    /// Forgets the constant: it is defined anew by what static part and flexure are believed to be.
+    fn start_epoch(&mut self, a_m: Rot<MainStart, Main>, a_s: Rot<SubStart, Sub>) {
+        let transition = self.so3.start_epoch(a_m, a_s);
+        self.p = transition * self.p * transition.transpose();
+        symmetrise(&mut self.p);
+    }
+
+    /// Whether the constant is known so badly that a linear update would do harm, and worse than what it could be defined by.
+    fn chain_is_broken(&self) -> bool {
+        let trace = |rows: SMatrix<f64, 3, STATES>| (rows * self.p * rows.transpose()).trace();
+        let chain = trace(self.so3.deformation_rows());
+        chain > BROKEN * BROKEN && chain > 4.0 * trace(So3::prediction_rows())
     }
 
     fn predict(&mut self) {

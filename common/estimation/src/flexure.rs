@@ -17,6 +17,12 @@ pub struct Flexure {
 }
 
 impl Flexure {
+    /// Whether the numbers describe a flexure at all: positive and finite, slower than any sampling, smaller than a radian.
+    pub fn is_sound(&self) -> bool {
+        let within = |v: f64, least: f64, most: f64| v >= least && v <= most;
+        within(self.mu, 1e-6, 1e3) && within(self.b, 1e-6, 1e3) && within(self.sigma, 1e-12, 1.0)
+    }
+
     /// Density of the driving noise, rad^2/s^3.
     pub fn density(&self) -> f64 {
         4.0 * self.mu * self.b * self.b * self.sigma * self.sigma
@@ -28,18 +34,22 @@ impl Flexure {
         Matrix2::from_diagonal(&Vector2::new(variance, self.b * self.b * variance))
     }
 
-    /// Cosine- and sine-like solutions `(c, s)` after the time `t`, with `s' = c`-like scaling `s = sin(l t) / l`.
+    /// `exp(-mu t)` times the cosine- and sine-like solutions `(c, s)` after the time `t`, where `s = sin(l t) / l`.
     fn modes(&self, t: f64) -> (f64, f64) {
         let k = self.b * self.b - self.mu * self.mu;
         let square = k * t * t;
+        let decay = (-self.mu * t).exp();
         if square.abs() < 1e-6 {
-            (1.0 - square / 2.0 + square * square / 24.0, t * (1.0 - square / 6.0 + square * square / 120.0))
+            let c = 1.0 - square / 2.0 + square * square / 24.0;
+            (decay * c, decay * t * (1.0 - square / 6.0 + square * square / 120.0))
         } else if k > 0.0 {
             let l = k.sqrt();
-            ((l * t).cos(), (l * t).sin() / l)
+            (decay * (l * t).cos(), decay * (l * t).sin() / l)
         } else {
+            // the products, not the factors: a hyperbolic cosine alone would overflow
             let l = (-k).sqrt();
-            ((l * t).cosh(), (l * t).sinh() / l)
+            let (slow, fast) = (((l - self.mu) * t).exp(), ((-l - self.mu) * t).exp());
+            (0.5 * (slow + fast), 0.5 * (slow - fast) / l)
         }
     }
 
@@ -47,7 +57,7 @@ impl Flexure {
     pub fn transition(&self, t: f64) -> Matrix2<f64> {
         let (c, s) = self.modes(t);
         let (mu, b2) = (self.mu, self.b * self.b);
-        Matrix2::new(c + mu * s, s, -b2 * s, c - mu * s) * (-mu * t).exp()
+        Matrix2::new(c + mu * s, s, -b2 * s, c - mu * s)
     }
 
     /// Exact covariance of what the driving noise adds over the time `t`: `P - F P F^T`.
@@ -60,7 +70,7 @@ impl Flexure {
     /// Autocovariance at the lag `tau >= 0`: paper 000 eq 17 with the factor the right way up, `R(0) = sigma^2`.
     pub fn autocovariance(&self, tau: f64) -> f64 {
         let (c, s) = self.modes(tau);
-        self.sigma * self.sigma * (-self.mu * tau).exp() * (c + self.mu * s)
+        self.sigma * self.sigma * (c + self.mu * s)
     }
 
     /// Two-sided spectral density at the angular frequency `w`, rad^2 s.
@@ -88,6 +98,13 @@ mod tests {
             for t in [1e-3, 0.01, 0.1, 1.0, 20.0] {
                 assert!((m.transition(t) - (a * t).exp()).norm() < 1e-12 * (1.0 + m.transition(t).norm()), "{m:?} {t}");
             }
+        }
+    }
+
+    #[test]
+    fn a_long_time_forgets_everything() {
+        for m in CASES.into_iter().chain([Flexure { mu: 90.0, b: 3.0, sigma: 1e-3 }]) {
+            assert!(m.transition(1e5).amax() < 1e-12 && (m.noise(1e5) - m.stationary()).amax() < 1e-20, "{m:?}");
         }
     }
 

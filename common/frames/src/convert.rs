@@ -21,6 +21,21 @@ impl<F: Frame> Vec3<F> {
     }
 }
 
+impl<F: Frame> Vec3<F> {
+    /// For a rotation vector `phi`: how `Log(Exp(e) Exp(phi))` depends on a small rotation `e`, the inverse of SO(3)'s left
+    /// Jacobian.
+    pub fn left_jacobian_inverse(self) -> Matrix3<f64> {
+        let angle = self.norm();
+        let skew = self.skew();
+        let factor = if angle < 1e-3 {
+            1.0 / 12.0 + angle * angle / 720.0
+        } else {
+            (1.0 - 0.5 * angle / (0.5 * angle).tan()) / (angle * angle)
+        };
+        Matrix3::identity() - skew * 0.5 + skew * skew * factor
+    }
+}
+
 impl<A: Frame, B: Frame> Rot<A, B> {
     /// As a matrix `C_B^A`.
     pub fn matrix(self) -> Matrix3<f64> {

@@ -52,6 +52,18 @@ impl<A: Frame, B: Frame> Rot<A, B> {
         Vec3::wrap(v * factor)
     }
 
+    /// The rotation vector that lies nearest to another one: near a half turn [`Rot::log`] may jump to the opposite axis, which
+    /// is the same rotation but no neighbour.
+    pub fn log_beside(self, neighbour: Vec3<A>) -> Vec3<A> {
+        let phi = self.log();
+        let angle = phi.norm();
+        if angle < 1.0 {
+            return phi;
+        }
+        let other = phi * ((angle - std::f64::consts::TAU) / angle);
+        if (other - neighbour).norm() < (phi - neighbour).norm() { other } else { phi }
+    }
+
     /// "B from A".
     pub fn inverse(self) -> Rot<B, A> {
         Rot::wrap(self.q.conjugate())

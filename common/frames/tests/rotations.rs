@@ -29,6 +29,27 @@ proptest! {
     }
 
     #[test]
+    fn left_jacobian_is_the_central_difference_of_the_logarithm(v in vector(3.0)) {
+        let phi = Vec3::<Main>::from(v);
+        let r = Rot::<Main, Sub>::exp(phi);
+        let jacobian = phi.left_jacobian_inverse();
+        for axis in 0..3 {
+            let mut e = [0.0; 3];
+            e[axis] = 1e-5;
+            let turned = |e: Vec3<Main>| (Rot::<Main, Main>::exp(e) * r).log_beside(phi);
+            let column = (turned(e.into()) - turned(-Vec3::from(e))) / 2e-5;
+            prop_assert!((column.column() - jacobian.column(axis)).norm() < 1e-6 * (1.0 + 1.0 / (3.15 - phi.norm()).powi(2)));
+        }
+    }
+
+    #[test]
+    fn neighbours_stay_neighbours_across_a_half_turn(v in vector(1e-3)) {
+        let near = Vec3::<Main>::new(2.0, -2.0, 1.387_192_8);
+        let turned = Rot::<Main, Main>::exp(v.into()) * Rot::<Main, Sub>::exp(near);
+        prop_assert!((turned.log_beside(near) - near).norm() < 3e-3);
+    }
+
+    #[test]
     fn a_product_turns_like_its_factors(a in vector(PI), b in vector(PI), v in vector(10.0)) {
         let (a, b) = (Rot::<Nav, Main>::exp(a.into()), Rot::<Main, Sub>::exp(b.into()));
         let v = Vec3::<Sub>::from(v);

@@ -24,6 +24,9 @@ pub struct Solution {
     pub rate: [f64; 3],
     /// Relative gyro bias that makes `constant` drift, rad/s, in m.
     pub drift: [f64; 3],
+    /// Relative scale and non-orthogonality of the gyros, a symmetric matrix in m: xx, yy, zz, xy, xz, yz. Its product with the
+    /// main unit's rate adds to `drift`.
+    pub scale: [f64; 6],
     /// Covariance of the error of `q`, rad^2, in m.
     pub covariance: [f64; 9],
     /// Covariance of the error of `static_q`, rad^2, in m.

@@ -67,6 +67,7 @@ fn figures(gyro: &Gyro) -> so3::Gyro {
     so3::Gyro {
         arw: gyro.arw,
         bias: gyro.bias,
+        instability: gyro.instability(),
         scale: gyro.scale,
         misalignment: gyro.misalignment,
         stamp_jitter: gyro.stamp_jitter,

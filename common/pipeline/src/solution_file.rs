@@ -1,7 +1,8 @@
 //! The solution files: one CSV an area, the same bytes from the processes and from the offline loop.
 
-use frames::{Nav, Rot, Sub, unit};
+use frames::{Main, Nav, Rot, Sub, Vec3, unit};
 use messages::Solution;
+use nalgebra::Matrix3;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -55,7 +56,8 @@ impl<W: Write> SolutionFile<W> {
         };
         arcsec(out, solution.phi)?;
         arcsec(out, deviations(&solution.covariance))?;
-        arcsec(out, Rot::<frames::Main, Sub>::from_wxyz(solution.static_q).log().array())?;
+        let phi = Vec3::<Main>::from(solution.phi);
+        arcsec(out, Rot::<Main, Sub>::from_wxyz(solution.static_q).log_beside(phi).array())?;
         match known {
             true => solution.q.iter().try_for_each(|x| write!(out, ",{x}"))?,
             false => out.write_all(b",,,,")?,
@@ -71,7 +73,10 @@ impl<W: Write> SolutionFile<W> {
         }
         write!(out, ",{},{}", solution.params_id, solution.flags.names())?;
         arcsec(out, solution.range)?;
-        arcsec(out, deviations(&solution.dynamic_covariance))?;
+        // of the difference of the two rotation vectors as they stand in the file, which at a large angle is not the small turn itself
+        let jacobian = phi.left_jacobian_inverse();
+        let of_difference = jacobian * Matrix3::from_row_slice(&solution.dynamic_covariance) * jacobian.transpose();
+        arcsec(out, of_difference.diagonal().map(f64::sqrt).into())?;
         writeln!(out)
     }
 

@@ -6,7 +6,9 @@
 use super::autocovariance::detrend;
 use super::window::Point;
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
+use crate::matching::so3::symmetric;
 use messages::Solution;
+use nalgebra::Matrix3;
 
 /// What ties the two gyro attitudes together at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,6 +19,8 @@ pub struct Anchor {
     pub constant: Rot<MainStart, SubStart>,
     /// Relative gyro bias that makes it drift, rad/s.
     pub drift: Vec3<Main>,
+    /// Relative scale and non-orthogonality of the gyros, whose product with a turn of the ship adds to it.
+    pub scale: Matrix3<f64>,
     /// Static part `S` of the deformation.
     pub fixed: Rot<Main, Sub>,
 }
@@ -25,10 +29,12 @@ impl Anchor {
     /// The anchor of a solution; `None` if it is not finite.
     pub fn of(solution: &Solution) -> Option<Self> {
         let drift = Vec3::from(solution.drift);
+        let scale = symmetric(&solution.scale.into());
         Some(Self {
             time_ns: solution.header.time_ns,
             constant: Rot::from_quaternion(solution.constant)?,
             drift: drift.is_finite().then_some(drift)?,
+            scale: scale.iter().all(|x| x.is_finite()).then_some(scale)?,
             fixed: Rot::from_quaternion(solution.static_q)?,
         })
     }
@@ -46,10 +52,12 @@ impl Anchor {
         Some(constants)
     }
 
-    /// By what the drift turns the constant from one point to the next, to second order in the step.
+    /// By what bias and scale turn the constant from one point to the next, to second order in the step.
     fn turn(&self, from: &Point, to: &Point) -> Rot<MainStart, MainStart> {
-        let half = unit::seconds(to.time_ns - from.time_ns) / 2.0;
-        Rot::exp((from.attitude_m * self.drift + to.attitude_m * self.drift) * half)
+        let dtheta = (from.attitude_m.inverse() * to.attitude_m).log();
+        let step_s = unit::seconds(to.time_ns - from.time_ns);
+        let drift = self.drift * step_s + Vec3::from_column(self.scale * dtheta.column());
+        Rot::exp((from.attitude_m * drift + to.attitude_m * drift) * 0.5)
     }
 }
 

@@ -64,6 +64,9 @@ impl Identifier for Rvm {
         let axes = self.identify(&chain)?;
         let length_s = self.window.length_s();
         let models: [Flexure; 3] = axes.map(|axis| safe(&axis, length_s));
+        if !models.iter().all(Flexure::is_sound) {
+            return None;
+        }
         let points = self.window.points();
         Some(FlexureParams {
             header: Header { stamps: Stamps::default(), ..pair.header },

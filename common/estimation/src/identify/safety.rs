@@ -24,6 +24,8 @@ pub const BELIEVABLE_S: f64 = 60.0;
 const BELIEF: f64 = 3.0;
 /// The most by which an oscillation that is not believed raises Q.
 const LARGEST_RAISE: f64 = 30.0;
+/// A standard deviation of a logarithm beyond this says that nothing is known; it is not believed as a factor.
+const LARGEST_DOUBT: f64 = 2.0;
 /// The largest `mu / b` of a model that oscillates.
 const OSCILLATES: f64 = 0.5;
 /// By how much the sigma of an oscillation is raised at least.
@@ -34,7 +36,7 @@ pub fn safe(identified: &Identified, length_s: f64) -> Flexure {
     let Flexure { mu, b, sigma } = identified.flexure;
     let density = identified.flexure.density();
     let short = length_s <= SHORT_S;
-    let doubt = |sd: f64| if short { sd.exp() } else { 1.0 };
+    let doubt = |sd: f64| if short { sd.min(LARGEST_DOUBT).exp() } else { 1.0 };
     if mu / b * doubt(BELIEF * identified.ln_mu_sd) <= OSCILLATES && length_s >= BELIEVABLE_S {
         return Flexure { mu, b, sigma: sigma * doubt(identified.ln_sigma_sd).max(WIDER) };
     }

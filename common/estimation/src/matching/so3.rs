@@ -10,11 +10,12 @@
 //! | flexure theta, its rate | 3 + 3 | additive, rad, rad/s | second-order Gauss-Markov, exact |
 //! | constant N | 3 | `N_true = Exp(-eta) N`, in the main unit's starting axes | relative gyro errors |
 //! | relative gyro bias | 3 | additive, rad/s, in m | constant |
+//! | what it varies by in the run | 3 | additive, rad/s, in m | first-order Gauss-Markov |
 //! | relative scale and non-orthogonality | 6 | additive, symmetric matrix, in m | constant |
 //!
 //! Corrections to the paper: eq 29 lacks the derivative's dot; 39 states collapse to these because the units' single errors cannot be told
-//! apart; the Euler angles of eqs 22 and 35 give way to the rotation vector. The last six states are ours: as process noise the scale errors of a
-//! coarse unit would have to be called white, which they are not. The antisymmetric part of a triad's misalignment turns the unit as
+//! apart; the Euler angles of eqs 22 and 35 give way to the rotation vector. The last nine states are ours: as process noise the scale errors of a
+//! coarse unit would have to be called white, which they are not, and its bias differs from pose to pose. The antisymmetric part of a triad's misalignment turns the unit as
 //! a whole, no data show it, and it widens the published covariance instead.
 //!
 //! Static part and flexure share ONE Jacobian, that at `theta = 0`: with the exact pair the flexure itself becomes a regressor for
@@ -26,7 +27,7 @@ use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector3};
 
 /// Size of the error state.
-pub const STATES: usize = 24;
+pub const STATES: usize = 27;
 /// Places of the error states.
 pub mod place {
     /// Static part.
@@ -41,8 +42,10 @@ pub mod place {
     pub const CONSTANT: usize = 12;
     /// Relative gyro bias.
     pub const BIAS: usize = 15;
+    /// What the bias varies by in the run.
+    pub const WANDER: usize = 18;
     /// Relative scale and non-orthogonality: xx, yy, zz, xy, xz, yz.
-    pub const SCALE: usize = 18;
+    pub const SCALE: usize = 21;
 }
 
 /// Covariance of the error state.
@@ -52,8 +55,16 @@ pub type ErrorState = SVector<f64, STATES>;
 type Rows = SMatrix<f64, 3, STATES>;
 type ByScale = SMatrix<f64, 3, 6>;
 
-/// Regularises a measurement that has no noise of its own: 0.05 arcsec.
+/// Regularises a measurement that has no noise of its own: 0.05 arcsec, and the random walk of so many seconds. With less, the
+/// covariance of a coarse unit and this variance lie too far apart for a double.
 const MATCHING_SIGMA: f64 = 0.05 * unit::ARCSEC;
+const MATCHING_S: f64 = 0.1;
+/// Correlation time of the bias's variation in the run, s.
+const WANDER_S: f64 = 100.0;
+/// So much of the scale and misalignment figures is not constant: nonlinearity, asymmetry, sensitivity to acceleration.
+const INCONSTANT: f64 = 0.1;
+/// For how long that part keeps its sign, s: about one turn of the ship, or one movement by hand.
+const INCONSTANT_S: f64 = 1.0;
 
 /// The figures of one unit's gyros.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,6 +73,8 @@ pub struct Gyro {
     pub arw: f64,
     /// Bias, rad/s, one standard deviation.
     pub bias: f64,
+    /// By how much the bias varies in the run, rad/s, one standard deviation.
+    pub instability: f64,
     /// Scale factor error, one standard deviation.
     pub scale: f64,
     /// Misalignment of a sensitive axis, rad, one standard deviation.
@@ -87,6 +100,28 @@ impl Grade {
         0.5 * (self.main.misalignment.powi(2) + self.sub.misalignment.powi(2))
     }
 
+    /// Variance, per second and per squared rate of turn, that the inconstant part of scale and misalignment adds.
+    fn turning_variance(&self) -> f64 {
+        let square = |gyro: &Gyro| gyro.scale.powi(2) + gyro.misalignment.powi(2);
+        INCONSTANT * INCONSTANT * INCONSTANT_S * (square(&self.main) + square(&self.sub))
+    }
+
+    /// Variance of a matching measurement, rad^2.
+    fn matching_variance(&self) -> f64 {
+        MATCHING_SIGMA.powi(2) + (self.main.arw.powi(2) + self.sub.arw.powi(2)) * MATCHING_S
+    }
+
+    /// The least standard deviation of a flexure that these gyros can tell from their own noise, rad: what the relative random
+    /// walk adds up to in ten seconds. Less must not be believed.
+    pub fn least_flexure(&self) -> f64 {
+        self.main.arw.hypot(self.sub.arw) * f64::sqrt(10.0)
+    }
+
+    /// Variance of the relative bias's variation in the run, rad^2/s^2.
+    pub fn wander_variance(&self) -> f64 {
+        self.main.instability.powi(2) + self.sub.instability.powi(2)
+    }
+
     /// Covariance of the relative scale states for an installation `d`, from the units' figures.
     pub fn scale_covariance(&self, d: Rot<Main, Sub>) -> Matrix6<f64> {
         let own = |gyro: &Gyro| {
@@ -105,7 +140,7 @@ impl Grade {
 }
 
 /// The symmetric matrix of the components xx, yy, zz, xy, xz, yz.
-fn symmetric(m: &SVector<f64, 6>) -> Matrix3<f64> {
+pub fn symmetric(m: &SVector<f64, 6>) -> Matrix3<f64> {
     Matrix3::new(m[0], m[3], m[4], m[3], m[1], m[5], m[4], m[5], m[2])
 }
 
@@ -150,10 +185,12 @@ pub struct So3 {
     theta_rate: Vector3<f64>,
     constant: Rot<MainStart, SubStart>,
     bias: Vec3<Main>,
+    wander: Vec3<Main>,
     scale: SVector<f64, 6>,
     a_m: Rot<MainStart, Main>,
     a_s: Rot<SubStart, Sub>,
     rate_m: Vector3<f64>,
+    dtheta_m: Vec3<Main>,
     since: Since,
 }
 
@@ -184,10 +221,12 @@ impl So3 {
             theta_rate: Vector3::zeros(),
             constant: Rot::identity(),
             bias,
+            wander: Vec3::ZERO,
             scale: SVector::zeros(),
             a_m: Rot::identity(),
             a_s: Rot::identity(),
             rate_m: Vector3::zeros(),
+            dtheta_m: Vec3::ZERO,
             since: Since::default(),
         }
     }
@@ -214,19 +253,22 @@ impl So3 {
     pub fn advance(&mut self, step: &Increment) {
         let mid = step.a_m * Rot::<Main, Main>::exp(step.dtheta_m * -0.5);
         let dtheta = step.dtheta_m.column();
-        let drift = self.bias * step.time_s + Vec3::from_column(symmetric(&self.scale) * dtheta);
+        let drift = (self.bias + self.wander) * step.time_s + Vec3::from_column(symmetric(&self.scale) * dtheta);
         self.constant = (Rot::<MainStart, MainStart>::exp(mid * drift) * self.constant).normalised();
         let rate = if step.time_s > 0.0 { dtheta / step.time_s } else { self.rate_m };
         let a = mid.matrix();
         let jitter = self.grade.main.stamp_jitter.powi(2) + self.grade.sub.stamp_jitter.powi(2);
         let change = a * (rate - self.rate_m);
+        // a unit that gives mean rates leaves out this much of the attitude's change, and two units not the same part of it
+        let coning = self.dtheta_m.cross(step.dtheta_m).norm() / 12.0;
         let since = &mut self.since;
         since.by_bias += a * step.time_s;
         since.by_scale += a * by_scale(dtheta);
         since.walk +=
-            (self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2)) * step.time_s + step.disturbance.powi(2);
+            (self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2)) * step.time_s + step.disturbance.powi(2) + coning * coning
+            + self.grade.turning_variance() * rate.norm_squared() * step.time_s;
         since.stamps += change * change.transpose() * jitter;
-        (self.a_m, self.a_s, self.rate_m) = (step.a_m, step.a_s, rate);
+        (self.a_m, self.a_s, self.rate_m, self.dtheta_m) = (step.a_m, step.a_s, rate, step.dtheta_m);
     }
 
     /// Lets time pass for the model of static part and flexure.
@@ -259,9 +301,14 @@ impl So3 {
         self.constant
     }
 
-    /// Relative gyro errors as they are known, at the present rate of the main unit, rad/s.
+    /// Relative gyro bias as it is known, rad/s.
     pub fn drift(&self) -> Vec3<Main> {
-        self.bias + Vec3::from_column(symmetric(&self.scale) * self.rate_m)
+        self.bias + self.wander
+    }
+
+    /// Relative scale and non-orthogonality as they are known: xx, yy, zz, xy, xz, yz.
+    pub fn scale(&self) -> [f64; 6] {
+        self.scale.into()
     }
 
     /// Rate of the deformation by the filter, rad/s.
@@ -274,8 +321,18 @@ impl So3 {
         let back = self.a_m.inverse().matrix();
         let mut rows = Rows::zeros();
         rows.fixed_view_mut::<3, 3>(0, place::CONSTANT).copy_from(&back);
-        rows.fixed_view_mut::<3, 3>(0, place::BIAS).copy_from(&(-back * self.since.by_bias));
+        for place in [place::BIAS, place::WANDER] {
+            rows.fixed_view_mut::<3, 3>(0, place).copy_from(&(-back * self.since.by_bias));
+        }
         rows.fixed_view_mut::<3, 6>(0, place::SCALE).copy_from(&(-back * self.since.by_scale));
+        rows
+    }
+
+    /// How the error of [`So3::predicted`] depends on the error state, but for the sign.
+    pub fn prediction_rows() -> Rows {
+        let mut rows = Rows::zeros();
+        rows.fixed_view_mut::<3, 3>(0, place::STATIC).fill_with_identity();
+        rows.fixed_view_mut::<3, 3>(0, place::FLEXURE).fill_with_identity();
         rows
     }
 
@@ -320,7 +377,15 @@ impl Matching<STATES, 3> for So3 {
             self.theta[axis] = f[(0, 0)] * theta + f[(0, 1)] * rate;
             self.theta_rate[axis] = f[(1, 0)] * theta + f[(1, 1)] * rate;
         }
-        transition.fixed_view_mut::<3, 3>(place::CONSTANT, place::BIAS).copy_from(&-since.by_bias);
+        let kept = (-h / WANDER_S).exp();
+        self.wander = self.wander * kept;
+        for axis in place::WANDER..place::WANDER + 3 {
+            transition[(axis, axis)] = kept;
+            noise[(axis, axis)] = self.grade.wander_variance() * (1.0 - kept * kept);
+        }
+        for place in [place::BIAS, place::WANDER] {
+            transition.fixed_view_mut::<3, 3>(place::CONSTANT, place).copy_from(&-since.by_bias);
+        }
         transition.fixed_view_mut::<3, 6>(place::CONSTANT, place::SCALE).copy_from(&-since.by_scale);
         let walk = Matrix3::identity() * since.walk + since.stamps;
         noise.fixed_view_mut::<3, 3>(place::CONSTANT, place::CONSTANT).copy_from(&walk);
@@ -328,15 +393,13 @@ impl Matching<STATES, 3> for So3 {
     }
 
     fn observe(&self) -> Observation<STATES, 3> {
-        let mut matrix = Rows::zeros();
-        matrix.fixed_view_mut::<3, 3>(0, place::STATIC).fill_with_identity();
-        matrix.fixed_view_mut::<3, 3>(0, place::FLEXURE).fill_with_identity();
+        let mut matrix = Self::prediction_rows();
         matrix.fixed_view_mut::<3, 3>(0, place::CONSTANT).copy_from(&self.a_m.inverse().matrix());
         let mismatch = self.predicted() * self.deformation().inverse();
         Observation {
             residual: -mismatch.log().column(),
             matrix,
-            noise: Matrix3::identity() * MATCHING_SIGMA.powi(2) + self.stamp_noise(),
+            noise: Matrix3::identity() * self.grade.matching_variance() + self.stamp_noise(),
         }
     }
 
@@ -349,6 +412,7 @@ impl Matching<STATES, 3> for So3 {
         let eta = three(place::CONSTANT).relabel::<MainStart>();
         self.constant = Rot::<MainStart, MainStart>::exp(-eta) * self.constant;
         self.bias += three(place::BIAS);
+        self.wander += three(place::WANDER);
         self.scale += error.fixed_rows::<6>(place::SCALE);
     }
 }

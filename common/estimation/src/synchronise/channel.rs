@@ -4,8 +4,8 @@ use messages::{Flags, ImuSample};
 
 /// A channel that has kept every bit for so many samples while another one moved is stuck.
 const STUCK_SAMPLES: u32 = 20;
-/// How near to the end of the range a value counts as clipped.
-const CLIP: f64 = 0.9999;
+/// How near to the end of the range a value counts as clipped; the last code of a converter lies somewhat below the nominal end.
+const CLIP: f64 = 0.998;
 
 /// The memory of the three gyro channels.
 #[derive(Clone, Copy, Debug)]

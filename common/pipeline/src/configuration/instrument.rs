@@ -61,6 +61,9 @@ pub struct Gyro {
     /// Bias, rad/s.
     #[serde(rename = "bias_deg_per_h", deserialize_with = "quantity::bias_deg_per_h")]
     pub bias: f64,
+    /// By how much the bias varies in the run, rad/s; a tenth of the bias if it is not told.
+    #[serde(rename = "instability_deg_per_h", default, deserialize_with = "quantity::instability_deg_per_h")]
+    instability: Option<f64>,
     /// Scale factor error, a ratio.
     #[serde(rename = "scale_ppm", default, deserialize_with = "quantity::scale_ppm")]
     pub scale: f64,
@@ -73,6 +76,13 @@ pub struct Gyro {
     /// End of the measuring range, rad/s; `None` if it is not known.
     #[serde(rename = "range_deg_per_s", default, deserialize_with = "quantity::range_deg_per_s")]
     pub range: Option<f64>,
+}
+
+impl Gyro {
+    /// By how much the bias varies in the run, rad/s.
+    pub fn instability(&self) -> f64 {
+        self.instability.unwrap_or(0.1 * self.bias)
+    }
 }
 
 /// The grade of an accelerometer triad: one standard deviation each.

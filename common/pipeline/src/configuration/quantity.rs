@@ -129,6 +129,7 @@ quantities! {
 
     arw_deg_per_sqrt_h: unit::DEG_PER_SQRT_H, 0.0, 1000.0;
     bias_deg_per_h: unit::DEG_PER_H, 0.0, 1e5;
+    instability_deg_per_h: unit::DEG_PER_H, 0.0, 1e5;
     vrw_ug_per_sqrt_hz: unit::MICRO_G, 0.0, 1e6;
     bias_ug: unit::MICRO_G, 0.0, 1e6;
     scale_ppm: unit::PPM, 0.0, 1e5;

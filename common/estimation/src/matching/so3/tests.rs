@@ -4,7 +4,7 @@ use super::*;
 const DT: f64 = 0.01;
 
 fn grade() -> Grade {
-    let gyro = Gyro { arw: 3e-7, bias: 5e-8, scale: 1e-4, misalignment: 2e-5, stamp_jitter: 0.0 };
+    let gyro = Gyro { arw: 3e-7, bias: 5e-8, instability: 5e-9, scale: 1e-4, misalignment: 2e-5, stamp_jitter: 0.0 };
     Grade { main: gyro, sub: gyro, static_noise: 2e-15 }
 }
 
@@ -60,6 +60,7 @@ fn difference(a: &So3, b: &So3) -> ErrorState {
     set(place::FLEXURE_RATE, a.theta_rate - b.theta_rate);
     set(place::CONSTANT, -(a.constant * b.constant.inverse()).log().column());
     set(place::BIAS, (a.bias - b.bias).column());
+    set(place::WANDER, (a.wander - b.wander).column());
     error.fixed_rows_mut::<6>(place::SCALE).copy_from(&(a.scale - b.scale));
     error
 }

@@ -1,0 +1,99 @@
+//! The offline loop gives the same bits each time, and the processes give the same bits as the offline loop.
+//!
+//! No assertion depends on how fast the host is, but for one that comes before each comparison: that no parameter set came late.
+//! The lead leaves the identifier two seconds for what takes it 10 ms.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::launch::{Ended, Launch, one_at_a_time};
+use common::retrace::{Story, retrace, rows, sets};
+use common::{Place, changed, configuration, demo, first_difference, offline, recorded, shipped};
+use pipeline::configuration::Configuration;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Stdio;
+
+fn in_force(configuration: &Configuration, solutions: &str) -> usize {
+    sets(&rows(configuration, solutions)).len()
+}
+
+#[test]
+fn offline_repeats_itself() {
+    let place = Place::new();
+    let mut all = Vec::new();
+    for seed in 1..=4 {
+        let configuration = configuration(&place.write("demo.toml", &demo(seed, 1.0)), 25.0);
+        let (solutions, sets) = offline(&configuration);
+        assert_eq!(solutions.lines().count(), 1 + 2501);
+        assert!(sets.len() > 3 && in_force(&configuration, &solutions) > 3, "seed {seed}: {} sets", sets.len());
+        let (again, sets_again) = offline(&configuration);
+        assert_eq!(first_difference(&solutions, &again), None, "seed {seed}");
+        assert_eq!(sets, sets_again, "seed {seed}");
+        assert!(!all.contains(&solutions), "seed {seed} gives what another one gave");
+        all.push(solutions);
+    }
+}
+
+/// Runs a configuration as processes and by `process`; gives the folder of the latter's files too.
+fn both_ways(place: &Place, configuration: &Path, duration: &str) -> (Ended, PathBuf) {
+    let _alone = one_at_a_time();
+    let live = Launch::start(place, "live", configuration, Some(duration)).end();
+    let out = place.path("offline");
+    let mut process = place.deckflex();
+    process.arg("process").arg(configuration).args(["--duration", duration]).arg("--out").arg(&out);
+    assert!(process.stdout(Stdio::null()).status().unwrap().success());
+    (live, out)
+}
+
+/// Asserts that both ways lead to the same files, with parameter sets in force in each.
+fn assert_same(place: &Place, configuration: &Path, duration: &str) {
+    let (live, offline) = both_ways(place, configuration, duration);
+    let report = live.well();
+    assert_eq!(report["late_parameters"], 0, "the host is too slow for a comparison");
+    let configuration = Configuration::read(configuration).unwrap();
+    let read = |out: &Path, name: &str| fs::read_to_string(out.join(name)).unwrap();
+    for area in &configuration.areas {
+        let name = format!("solution_{}.csv", area.name);
+        let live = read(&live.out, &name);
+        assert_eq!(first_difference(&live, &read(&offline, &name)), None, "{name}");
+        assert!(in_force(&configuration, &live) > 0, "{name}: no parameter set came into force");
+    }
+    assert_eq!(read(&live.out, "summary.json"), read(&offline, "summary.json"));
+}
+
+#[test]
+fn simulated_units_give_the_same_live_and_offline() {
+    let place = Place::new();
+    assert_same(&place, &place.write("demo.toml", &demo(1, 2.0)), "12s");
+}
+
+/// One of the units has a clock of its own, and its samples are lost, repeated and swapped.
+#[test]
+fn two_areas_give_the_same_live_and_offline() {
+    let place = Place::new();
+    let text = shipped("two_areas.toml").replace("minimum_s = 8", "minimum_s = 3\nperiod_s = 2\nlead_s = 2");
+    assert_same(&place, &place.write("two_areas.toml", &changed(&text, &[("seed", "2")])), "12s");
+}
+
+#[test]
+fn recorded_units_give_the_same_live_and_offline() {
+    let place = Place::new();
+    assert_same(&place, &recorded(&place, 3, 20.0, 4.0, 8.0), "20s");
+}
+
+/// The negative control: with a lead of one sample the live identifier is always too late, and the comparison must notice.
+///
+/// Even then nothing is lost: which set was in force when stands in the rows, and from them the run can be computed again.
+#[test]
+fn without_a_lead_live_and_offline_differ() {
+    let place = Place::new();
+    let path = recorded(&place, 4, 14.0, 4.0, 0.01);
+    let (live, offline) = both_ways(&place, &path, "14s");
+    let late = live.well()["late_parameters"].as_u64().unwrap();
+    let solutions = live.solutions("radar");
+    let configuration = configuration(&path, 14.0);
+    assert!(late > 0 && late as usize == in_force(&configuration, &solutions), "{late} late");
+    assert_ne!(solutions, fs::read_to_string(offline.join("solution_radar.csv")).unwrap());
+    retrace(&configuration, &solutions, &Story::default()).unwrap();
+}
