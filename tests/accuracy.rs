@@ -1,19 +1,20 @@
-//! Accuracy of the demo scenario beside its bound, over fixed seeds.
+//! Accuracy of the demo scenario beside its bound, over fixed seeds; and of real units on one rigid board.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
 use estimation::flexure::Flexure;
-use frames::unit;
+use frames::{Main, Rot, Sub, Vec3, unit};
 use messages::{Solution, Truth};
 use nalgebra::{Matrix3, Vector3};
 use pipeline::configuration::{Configuration, IdentifierMethod};
 use pipeline::offline::{self, Sink};
 use pipeline::summary::deformation_error;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-const ACCURATE_FROM_S: f64 = 120.0;
+/// Errors count from here to the end, s.
+const FROM_S: f64 = 120.0;
 const DURATION_S: f64 = 600.0;
 
-/// Errors of one run of one area.
+/// Errors of one run of the demo.
 #[derive(Default)]
 struct Errors {
     truth: Option<Truth>,
@@ -21,7 +22,7 @@ struct Errors {
     count: f64,
     /// Normalised squared error of the last solution.
     nees: f64,
-    worst_early: f64,
+    deck_outside: f64,
 }
 
 impl Sink for Errors {
@@ -29,28 +30,19 @@ impl Sink for Errors {
         self.truth = Some(*truth);
     }
 
-    fn parameters(&mut self, p: &messages::FlexureParams) {
-        if std::env::var("SHOW").is_ok() { let t = unit::seconds(p.header.time_ns); if t < 130.0 {
-            println!("t {t:6.1} mu {:.3?} b {:.3?} sigma {:.2?} Q {:.2?}", p.mu, p.b, p.sigma.map(|s| s / unit::ARCMIN), [0,1,2].map(|i| 4.0*p.mu[i]*(p.b[i]*p.sigma[i]).powi(2)*1e8)); } }
-    }
-
     fn solution(&mut self, solution: &Solution) {
         let truth = self.truth.as_ref().filter(|truth| truth.header.sequence == solution.header.sequence).unwrap();
-        if !solution.is_valid() {
+        if !solution.is_valid() || unit::seconds(solution.header.time_ns) < FROM_S {
             return;
         }
-        let error = deformation_error(solution, truth);
-        let t = unit::seconds(solution.header.time_ns);
-        let e = Vector3::from(error.array());
+        let error: Vector3<f64> = deformation_error(solution, truth).column();
         let p = Matrix3::from_row_slice(&solution.covariance);
-        self.nees = (e.transpose() * p.try_inverse().unwrap() * e)[0];
-        for axis in 0..3 {
-            self.worst_early = self.worst_early.max(e[axis].abs() / p[(axis, axis)].sqrt());
-        }
-        if t >= ACCURATE_FROM_S {
-            (0..3).for_each(|axis| self.square[axis] += e[axis].powi(2));
-            self.count += 1.0;
-        }
+        self.nees = (error.transpose() * p.try_inverse().unwrap() * error)[0];
+        (0..3).for_each(|axis| self.square[axis] += error[axis].powi(2));
+        let deck = pipeline::summary::deck_error(solution, truth).array();
+        self.deck_outside +=
+            (0..3).filter(|&axis| deck[axis].abs() > 1.96 * solution.deck_sigma[axis]).count() as f64 / 3.0;
+        self.count += 1.0;
     }
 }
 
@@ -59,75 +51,116 @@ fn demo(seed: u64) -> Configuration {
     let mut configuration = Configuration::read(&path).unwrap();
     configuration.run.seed = seed;
     configuration.run.duration_s = Some(DURATION_S);
-    if let Ok(m) = std::env::var("MINIMUM") {
-        configuration.areas[0].identifier.minimum_s = m.parse().unwrap();
-    }
     configuration
 }
 
-fn told(mut configuration: Configuration) -> Configuration {
+/// The same run by a filter that is told the true flexure model: the bound.
+fn told(seed: u64) -> Configuration {
+    let mut configuration = demo(seed);
     let truth = configuration.areas[0].simulation.flexure;
-    let model = std::array::from_fn(|i| Flexure { mu: truth[i].mu, b: truth[i].b, sigma: truth[i].sigma });
+    let model = truth.map(|axis| Flexure { mu: axis.mu, b: axis.b, sigma: axis.sigma });
     configuration.areas[0].identifier.method = IdentifierMethod::Fixed(model);
     configuration
 }
 
-fn run(configuration: &Configuration) -> Errors {
-    let mut errors = Errors::default();
-    offline::run(configuration, &mut errors).unwrap();
-    errors
+/// The runs of these configurations, on two threads.
+fn runs(configurations: Vec<Configuration>) -> Vec<Errors> {
+    let run = |configuration: &Configuration| {
+        let mut errors = Errors::default();
+        offline::run(configuration, &mut errors).unwrap();
+        errors
+    };
+    std::thread::scope(|scope| {
+        let halves = configurations.chunks(configurations.len().div_ceil(2));
+        let started: Vec<_> =
+            halves.map(|half| scope.spawn(move || half.iter().map(run).collect::<Vec<_>>())).collect();
+        started.into_iter().flat_map(|half| half.join().unwrap()).collect()
+    })
+}
+
+/// Root mean square error per axis over all runs, arcmin.
+fn rms(runs: &[Errors]) -> [f64; 3] {
+    let mean = |axis: usize| runs.iter().map(|run| run.square[axis] / run.count).sum::<f64>() / runs.len() as f64;
+    [0, 1, 2].map(|axis| mean(axis).sqrt() / unit::ARCMIN)
 }
 
 #[test]
-fn explore() {
-    let n: u64 = std::env::var("SEEDS").map_or(16, |s| s.parse().unwrap());
-    let jobs: Vec<u64> = (1..=n).collect();
-    let results: Vec<(u64, Errors, Errors)> = std::thread::scope(|scope| {
-        let halves: Vec<_> = jobs
-            .chunks(jobs.len().div_ceil(2))
-            .map(|c| {
-                scope.spawn(move || c.iter().map(|&s| (s, run(&demo(s)), run(&told(demo(s))))).collect::<Vec<_>>())
-            })
-            .collect();
-        halves.into_iter().flat_map(|h| h.join().unwrap()).collect()
-    });
-    let rms = |e: &Errors| e.square.map(|s| (s / e.count).sqrt() / unit::ARCMIN);
-    let mut pooled = [[0.0; 3]; 2];
-    let mut nees = [0.0; 2];
-    for (seed, a, b) in &results {
-        println!(
-            "{seed:3} {:.2?} nees {:6.2} worst {:5.2}  | told {:.2?} nees {:6.2} worst {:5.2}",
-            rms(a),
-            a.nees,
-            a.worst_early,
-            rms(b),
-            b.nees,
-            b.worst_early
-        );
-        for i in 0..3 {
-            pooled[0][i] += rms(a)[i].powi(2) / n as f64;
-            pooled[1][i] += rms(b)[i].powi(2) / n as f64;
-        }
-        nees[0] += a.nees / n as f64 / 3.0;
-        nees[1] += b.nees / n as f64 / 3.0;
-    }
-    println!("pooled {:.3?} told {:.3?} nees/3 {:.2?}", pooled[0].map(f64::sqrt), pooled[1].map(f64::sqrt), nees);
+fn demo_stays_near_the_filter_that_is_told_the_flexure() {
+    let found = runs((1..=30).map(demo).collect());
+    let bound = runs((1..=16).map(told).collect());
+    let (ours, theirs) = (rms(&found[..16]), rms(&bound));
+    let norm = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let ratio = norm(ours) / norm(theirs);
+    let nees: f64 = found.iter().map(|run| run.nees).sum();
+    let outside = found.iter().map(|run| run.deck_outside / run.count).sum::<f64>() / 30.0;
+    println!("rms arcmin {ours:.3?}, told {theirs:.3?}, ratio {ratio:.3}; NEES of 30 seeds {nees:.1} of 90");
+    println!("deck attitude outside its range: {outside:.3}");
+    assert!(ratio <= 1.2, "{ratio}");
+    assert!(ours[2] <= 0.8 && ours[0] <= 0.75 && ours[1] <= 0.75, "{ours:?}");
+    // 95 % of a chi-square with 90 degrees of freedom
+    assert!((65.6..118.2).contains(&nees), "{nees}");
+    assert!(outside < 0.1, "{outside}");
 }
 
-#[test]
-fn one() {
-    let seed = std::env::var("SEED").map_or(9, |s| s.parse().unwrap());
-    struct Show(Errors, f64);
-    impl Sink for Show {
-        fn truth(&mut self, t: &Truth) { self.0.truth(t) }
-        fn parameters(&mut self, p: &messages::FlexureParams) { self.0.parameters(p) }
-        fn solution(&mut self, s: &Solution) {
-            self.0.solution(s);
-            let t = unit::seconds(s.header.time_ns);
-            if t >= self.1 && t < 130.0 { self.1 += 5.0;
-                let e = deformation_error(s, self.0.truth.as_ref().unwrap()).array().map(|e| e / unit::ARCMIN);
-                println!("    {t:6.1} valid {} err {e:.2?} sigma {:.2?}", s.valid, [0,4,8].map(|i| s.covariance[i].sqrt()/unit::ARCMIN)); }
-        }
+fn recordings() -> Option<PathBuf> {
+    let told = std::env::var_os("DECKFLEX_DATA").map(PathBuf::from);
+    let folder = told.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data")).join("mimu4444");
+    if !folder.is_dir() {
+        println!("skipped: no data");
+        return None;
     }
-    offline::run(&demo(seed), &mut Show(Errors::default(), 0.0)).unwrap();
+    Some(folder)
+}
+
+/// How often the dynamic part of a rigid board stays within its range, and the last registered installation.
+#[derive(Default)]
+struct Board {
+    valid: f64,
+    inside: [f64; 3],
+    installation: Option<Rot<Main, Sub>>,
+}
+
+impl Sink for Board {
+    fn solution(&mut self, solution: &Solution) {
+        if !solution.is_valid() {
+            return;
+        }
+        self.valid += 1.0;
+        for axis in 0..3 {
+            let sigma = solution.dynamic_covariance[4 * axis].sqrt();
+            self.inside[axis] += f64::from(solution.dynamic[axis].abs() <= 1.96 * sigma);
+        }
+        self.installation = Rot::from_quaternion(solution.registered);
+    }
+}
+
+/// Two MEMS units on one rigid board, turned by hand: the true dynamic deformation is zero, and the installation was determined from
+/// nine such recordings together.
+#[test]
+fn a_rigid_board_has_no_flexure() {
+    let Some(folder) = recordings() else { return };
+    let half_turn = Rot::<Sub, Main>::exp(Vec3::new(std::f64::consts::PI, 0.0, 0.0));
+    let small = |x: f64, y: f64, z: f64| Rot::<Sub, Sub>::exp(Vec3::new(x, y, z) * unit::DEGREE);
+    let units = [
+        ("exp1_imu3.csv", small(-0.017, -0.018, -0.221) * Rot::<Sub, Main>::identity()),
+        ("exp1_imu2.csv", small(0.131, -0.050, -90.192) * half_turn),
+    ];
+    for (file, sub_from_main) in units {
+        let work = tempfile::tempdir().unwrap();
+        let grade = "gyro = { arw_deg_per_sqrt_h = 0.6, bias_deg_per_h = 5000, scale_ppm = 20000, misalignment_arcsec = 3600, \
+                     stamp_jitter_us = 490, range_deg_per_s = 2000 }";
+        let source = |file: &str| format!("source = {{ kind = \"csv\", path = {:?} }}", folder.join(file));
+        let main = source("exp1_imu1.csv");
+        let sub = source(file);
+        let text = format!("rate_hz = 62.5\n[main]\n{main}\n{grade}\n[[area]]\nname = \"board\"\n{sub}\n{grade}\n");
+        let path = work.path().join("board.toml");
+        std::fs::write(&path, text).unwrap();
+        let mut board = Board::default();
+        offline::run(&Configuration::read(&path).unwrap(), &mut board).unwrap();
+        let error = (board.installation.unwrap() * sub_from_main).angle() / unit::DEGREE;
+        let inside = board.inside.map(|n| n / board.valid);
+        println!("{file}: installation within {error:.3} deg, dynamic part within its range {inside:.3?} of the time");
+        assert!(error < 0.25, "{file}: {error}");
+        assert!(inside.iter().all(|&share| share >= 0.95), "{file}: {inside:?}");
+    }
 }

@@ -3,17 +3,21 @@
 //! Source: paper 001 eqs 2-8 in windowed form: the angle increments of both units over short windows, `a = C_s^m b + c`, solved
 //! for the rotation in closed form (Davenport's problem, by singular values) after the means are taken out, so that a constant relative
 //! gyro bias `c` does no harm. The literal cumulative form of the paper grows worse with time.
+//!
+//! Scale errors of coarse units leak into that rotation where the motion prefers an axis. So the matrix `(I + K) C_s^m` is solved
+//! for as well, with `K` held to the size of the units' scale errors, and its nearest rotation is taken: with units as good as a
+//! ship's this is Davenport's solution, with coarse ones their scale errors drop out.
 
 use frames::{Main, Rot, Sub, Vec3, unit};
 use messages::{Flags, ImuPair};
 use nalgebra::{Matrix3, Vector3};
 
-/// Length of a window, s; they overlap by half.
-const WINDOW_S: f64 = 1.0;
-/// The residuals of half-overlapping windows of a flexing hull are not independent: their variance counts so much more.
-const CORRELATION: f64 = 4.0;
+/// Length of a window, s.
+const WINDOW_S: f64 = 0.1;
+/// The residuals of neighbouring windows of a flexing hull are not independent: their variance counts so much more.
+const CORRELATION: f64 = 20.0;
 /// Least number of windows before a solution is tried.
-const LEAST_WINDOWS: f64 = 8.0;
+const LEAST_WINDOWS: f64 = 40.0;
 /// Least ratio of the second to the first singular value: below, the motion has one axis only.
 const LEAST_RATIO: f64 = 1e-3;
 /// Largest standard deviation of a registered axis.
@@ -49,9 +53,11 @@ impl Registration {
 }
 
 /// Collects windows of both units' angle increments.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Registrar {
-    halves: Halves,
+    /// Variance of a relative scale error.
+    scale_variance: f64,
+    filling: Filling,
     windows: f64,
     length_s: f64,
     sum_a: Vector3<f64>,
@@ -61,39 +67,45 @@ pub struct Registrar {
     sum_bb: Matrix3<f64>,
 }
 
-/// The half window that is being filled and the one before it.
+/// The window that is being filled.
 #[derive(Clone, Copy, Debug, Default)]
-struct Halves {
-    before: Option<Half>,
-    now: Half,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct Half {
+struct Filling {
     a: Vector3<f64>,
     b: Vector3<f64>,
     length_s: f64,
 }
 
 impl Registrar {
+    /// A registrar for units whose relative scale errors have this variance.
+    pub fn new(scale_variance: f64) -> Self {
+        Self {
+            scale_variance,
+            filling: Filling::default(),
+            windows: 0.0,
+            length_s: 0.0,
+            sum_a: Vector3::zeros(),
+            sum_b: Vector3::zeros(),
+            sum_aa: Matrix3::zeros(),
+            sum_ab: Matrix3::zeros(),
+            sum_bb: Matrix3::zeros(),
+        }
+    }
+
     /// Takes the increments of a pair.
     pub fn add(&mut self, pair: &ImuPair) {
         if pair.flags.intersects(Flags::GAP | Flags::NEW_EPOCH | Flags::SATURATED) {
-            self.halves = Halves::default();
+            self.filling = Filling::default();
             return;
         }
-        let now = &mut self.halves.now;
-        now.a += Vec3::<Main>::from(pair.dtheta_m).column();
-        now.b += Vec3::<Sub>::from(pair.dtheta_s).column();
-        now.length_s += unit::seconds(pair.interval_ns);
-        if now.length_s < 0.5 * WINDOW_S - 0.5 * unit::seconds(pair.interval_ns) {
-            return;
+        let interval_s = unit::seconds(pair.interval_ns);
+        let filling = &mut self.filling;
+        filling.a += Vec3::<Main>::from(pair.dtheta_m).column();
+        filling.b += Vec3::<Sub>::from(pair.dtheta_s).column();
+        filling.length_s += interval_s;
+        if filling.length_s >= WINDOW_S - 0.5 * interval_s {
+            let Filling { a, b, length_s } = std::mem::take(filling);
+            self.window(a, b, length_s);
         }
-        let now = self.halves.now;
-        if let Some(before) = self.halves.before {
-            self.window(before.a + now.a, before.b + now.b, before.length_s + now.length_s);
-        }
-        self.halves = Halves { before: Some(now), now: Half::default() };
     }
 
     fn window(&mut self, a: Vector3<f64>, b: Vector3<f64>, length_s: f64) {
@@ -115,11 +127,13 @@ impl Registrar {
         let aa = self.sum_aa - self.sum_a * self.sum_a.transpose() / n;
         let ab = self.sum_ab - self.sum_a * self.sum_b.transpose() / n;
         let bb = self.sum_bb - self.sum_b * self.sum_b.transpose() / n;
-        let svd = ab.try_svd(true, true, f64::EPSILON, 100)?;
-        let (u, v_t) = (svd.u?, svd.v_t?);
-        let sign = (u.determinant() * v_t.determinant()).signum();
-        let c = u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v_t;
-        let residual = aa - c * ab.transpose() - ab * c.transpose() + c * bb * c.transpose();
+        let (davenport, singular) = nearest_rotation(&ab)?;
+        let spread = |c: &Matrix3<f64>| aa - c * ab.transpose() - ab * c.transpose() + c * bb * c.transpose();
+        let variance = spread(&davenport).trace() / (3.0 * n - 6.0);
+        let pull = variance / self.scale_variance.max(f64::MIN_POSITIVE);
+        let scaled = (ab + davenport * pull) * (bb + Matrix3::identity() * pull).try_inverse()?;
+        let (c, _) = nearest_rotation(&scaled)?;
+        let residual = spread(&c);
         let freedom = 3.0 * n - 6.0;
         let variance = (residual.trace() / freedom).max(f64::MIN_POSITIVE);
         let information = Matrix3::identity() * aa.trace() - aa;
@@ -133,7 +147,15 @@ impl Registrar {
             bias: Vec3::from_column((self.sum_a - c * self.sum_b) / self.length_s),
             bias_sigma: (rate_variance * (CORRELATION / n)).map(f64::sqrt),
             residual_rate: rate_variance.map(f64::sqrt),
-            ratio: svd.singular_values[1] / svd.singular_values[0].max(f64::MIN_POSITIVE),
+            ratio: singular[1] / singular[0].max(f64::MIN_POSITIVE),
         })
     }
+}
+
+/// The rotation nearest to a matrix, and the matrix's singular values.
+fn nearest_rotation(m: &Matrix3<f64>) -> Option<(Matrix3<f64>, Vector3<f64>)> {
+    let svd = m.try_svd(true, true, f64::EPSILON, 100)?;
+    let (u, v_t) = (svd.u?, svd.v_t?);
+    let sign = (u.determinant() * v_t.determinant()).signum();
+    Some((u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v_t, svd.singular_values))
 }

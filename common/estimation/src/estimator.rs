@@ -39,6 +39,14 @@ pub struct Settings {
     pub flexure: Option<[Flexure; 3]>,
 }
 
+impl Settings {
+    fn registrar(&self) -> Registrar {
+        Registrar::new(self.grade.scale_variance())
+    }
+}
+
+/// While the filter runs, the registration by motion is worked out so often, ns.
+const REGISTER_AGAIN_NS: i64 = 10_000_000_000;
 /// Registration by motion takes at least so long, s.
 const LEAST_REGISTRATION_S: f64 = 5.0;
 /// A registration as good as this is not waited for any longer.
@@ -57,6 +65,8 @@ const LEAST_GUESS: f64 = 1.0 * unit::ARCSEC;
 const RANGE: f64 = 1.96;
 /// A covariance beyond this (1 rad^2) says nothing of a rotation any more.
 const LOST: f64 = 1.0;
+/// No hull bends more than this (3 degrees, rad); what an identifier takes for more is a coarse unit's error.
+const LARGEST_FLEXURE: f64 = 0.05;
 /// Beyond this standard deviation (rad) the constant is not worth keeping.
 const BROKEN: f64 = 0.1;
 /// Parameter sets that wait for their time.
@@ -67,6 +77,10 @@ const WAITING: usize = 8;
 pub struct So3Estimator {
     settings: Settings,
     phase: Phase,
+    /// Goes on collecting when the filter runs: what the motion alone says of the installation.
+    registrar: Registrar,
+    registered: Option<Registration>,
+    registered_ns: i64,
     /// Sets that wait for their time, in the order of it.
     waiting: VecDeque<FlexureParams>,
     /// The set in force.
@@ -79,7 +93,7 @@ pub struct So3Estimator {
 
 #[derive(Clone, Debug)]
 enum Phase {
-    Registering { registrar: Box<Registrar>, since_ns: Option<i64> },
+    Registering { since_ns: Option<i64> },
     Running(Box<Running>),
 }
 
@@ -103,18 +117,15 @@ struct Good {
     a_m: Rot<MainStart, Main>,
 }
 
-impl Phase {
-    fn registering() -> Self {
-        Self::Registering { registrar: Box::default(), since_ns: None }
-    }
-}
-
 impl So3Estimator {
     /// An estimator that has seen nothing yet.
     pub fn new(settings: Settings) -> Self {
         Self {
             settings,
-            phase: Phase::registering(),
+            registrar: settings.registrar(),
+            registered: None,
+            registered_ns: i64::MIN,
+            phase: Phase::Registering { since_ns: None },
             waiting: VecDeque::with_capacity(WAITING),
             params: None,
             last_ns: None,
@@ -134,20 +145,26 @@ impl So3Estimator {
         }
         if let (Some(params), Phase::Running(running)) = (&self.params, &mut self.phase) {
             let least = self.settings.grade.least_flexure();
-            running.so3.set_flexure(model(params).map(|m| Flexure { sigma: m.sigma.max(least), ..m }));
+            running.so3.set_flexure(model(params).map(|flexure| flexure.bounded(least, LARGEST_FLEXURE)));
         }
     }
 
     /// Collects motion until it shows the installation; then the filter starts with this pair.
     fn register(&mut self, pair: &ImuPair) {
-        let Phase::Registering { registrar, since_ns } = &mut self.phase else { return };
         let time_ns = pair.header.time_ns;
+        self.registrar.add(pair);
+        let Phase::Registering { since_ns } = &mut self.phase else {
+            if time_ns - self.registered_ns >= REGISTER_AGAIN_NS {
+                self.registered = self.registrar.solve().filter(Registration::is_observable).or(self.registered);
+                self.registered_ns = time_ns;
+            }
+            return;
+        };
         let waited_s = unit::seconds(time_ns - *since_ns.get_or_insert(time_ns));
-        registrar.add(pair);
         if waited_s < LEAST_REGISTRATION_S || pair.flags.contains(Flags::GAP) {
             return;
         }
-        let found = registrar.solve().filter(Registration::is_observable);
+        let found = self.registrar.solve().filter(Registration::is_observable);
         let timed_out = waited_s >= self.settings.registration_s;
         let running = match (found, self.settings.installation) {
             (Some(found), _) if timed_out || found.largest_sigma() < GOOD_REGISTRATION => {
@@ -159,7 +176,7 @@ impl So3Estimator {
                     covariance: Matrix3::identity() * (installation.sigma.powi(2) / REGISTRATION_DOUBT),
                     bias: Vec3::ZERO,
                     bias_sigma: Vector3::from_element(f64::INFINITY),
-                    residual_rate: registrar.solve().map_or(Vector3::zeros(), |seen| seen.residual_rate),
+                    residual_rate: self.registrar.solve().map_or(Vector3::zeros(), |seen| seen.residual_rate),
                     ratio: 0.0,
                 };
                 self.start(surveyed, Flags::INSTALLATION | Flags::UNOBSERVABLE)
@@ -170,6 +187,7 @@ impl So3Estimator {
             }
             _ => return,
         };
+        (self.registered, self.registered_ns) = (found, time_ns);
         self.phase = Phase::Running(Box::new(running));
         self.adopt(time_ns);
     }
@@ -237,6 +255,10 @@ impl So3Estimator {
         solution.covariance = row_major(&covariance);
         solution.static_covariance = row_major(&static_covariance);
         solution.dynamic_covariance = row_major(&dynamic_covariance);
+        if let Some(registered) = &self.registered {
+            solution.registered = registered.rotation.quaternion();
+            solution.registered_sigma = registered.covariance.diagonal().map(f64::sqrt).into();
+        }
         solution.range = covariance.diagonal().map(|v| RANGE * v.sqrt()).into();
         solution.valid = u32::from(!coasting && covariance.diagonal().max() < LOST);
         if pair.ins != [0.0; 4] {
@@ -281,7 +303,8 @@ impl Estimator for So3Estimator {
         }
         if let Phase::Running(running) = &mut self.phase {
             if running.step(pair, &self.settings).is_none() {
-                self.phase = Phase::registering();
+                self.phase = Phase::Registering { since_ns: None };
+                self.registrar = self.settings.registrar();
                 self.news |= Flags::RESET;
             }
         }

@@ -23,6 +23,16 @@ impl Flexure {
         within(self.mu, 1e-6, 1e3) && within(self.b, 1e-6, 1e3) && within(self.sigma, 1e-12, 1.0)
     }
 
+    /// The same with a standard deviation of at least `least` and at most `most`; a smaller one keeps the density, so that the rate is
+    /// as lively as before.
+    pub fn bounded(self, least: f64, most: f64) -> Self {
+        if self.sigma <= most {
+            return Self { sigma: self.sigma.max(least), ..self };
+        }
+        let b = (self.density() / (4.0 * most * most)).cbrt();
+        Self { mu: b, b, sigma: most }
+    }
+
     /// Density of the driving noise, rad^2/s^3.
     pub fn density(&self) -> f64 {
         4.0 * self.mu * self.b * self.b * self.sigma * self.sigma

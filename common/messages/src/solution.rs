@@ -33,6 +33,10 @@ pub struct Solution {
     pub static_covariance: [f64; 9],
     /// Covariance of the error of `dynamic`, rad^2, in m.
     pub dynamic_covariance: [f64; 9],
+    /// The installation as the motion alone shows it, averaged over the run; all zeros while it does not.
+    pub registered: [f64; 4],
+    /// Standard deviation of its error, rad, in m.
+    pub registered_sigma: [f64; 3],
     /// Half width of the published 95 % range of each component of `q`'s error, rad.
     pub range: [f64; 3],
     /// `C_s^n`; all zeros where the main unit's attitude is not known.

@@ -41,10 +41,14 @@ pub struct AreaSummary {
     pub deck_rmse_arcsec: Option<[f64; 3]>,
     /// Share of solutions whose deck attitude lies within 1.96 of its standard deviations.
     pub deck_coverage_95: Option<[f64; 3]>,
-    /// Rotation vector of the static part at the last valid solution.
+    /// Rotation vector of the installation as the motion alone shows it, averaged over the run; missing where it does not.
     pub installation_deg: Option<[f64; 3]>,
     /// Its standard deviation.
     pub installation_sigma_deg: Option<[f64; 3]>,
+    /// Rotation vector of the filter's static part at the last valid solution.
+    pub static_deg: Option<[f64; 3]>,
+    /// Its standard deviation.
+    pub static_sigma_deg: Option<[f64; 3]>,
     /// Parameter sets used.
     pub parameter_sets: u64,
 }
@@ -134,6 +138,8 @@ impl Figures {
         let arcsec = |square: [f64; 3], n: u64| (n > 0).then(|| square.map(|s| (s / n as f64).sqrt() / unit::ARCSEC));
         let share = |covered: [u64; 3], n: u64| (n > 0).then(|| covered.map(|c| c as f64 / n as f64));
         let degrees = |v: [f64; 3]| v.map(|x| x / unit::DEGREE);
+        let vector = |q: [f64; 4]| Rot::<Main, Sub>::from_wxyz(q).log().array();
+        let registered = self.last.filter(|last| last.registered != [0.0; 4]);
         AreaSummary {
             name: self.name.clone(),
             samples: self.samples,
@@ -145,8 +151,10 @@ impl Figures {
             coverage_95: share(sums.covered, sums.with_truth),
             deck_rmse_arcsec: arcsec(sums.deck_square, sums.with_deck),
             deck_coverage_95: share(sums.deck_covered, sums.with_deck),
-            installation_deg: self.last.map(|last| degrees(Rot::<Main, Sub>::from_wxyz(last.static_q).log().array())),
-            installation_sigma_deg: self.last.map(|last| degrees(deviations(&last.static_covariance))),
+            installation_deg: registered.map(|last| degrees(vector(last.registered))),
+            installation_sigma_deg: registered.map(|last| degrees(last.registered_sigma)),
+            static_deg: self.last.map(|last| degrees(vector(last.static_q))),
+            static_sigma_deg: self.last.map(|last| degrees(deviations(&last.static_covariance))),
             parameter_sets: self.parameter_sets,
         }
     }

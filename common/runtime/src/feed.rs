@@ -1,5 +1,8 @@
-use crate::{Connection, Publisher, TransportError, monotonic_ns};
+use crate::{Connection, Publisher, TransportError, monotonic_ns, sleep_until};
 use messages::{Header, ImuSample, MainAttitude, Truth, topic};
+
+/// A source that has had nothing to send stays for so long after its end marks, ns.
+const STAY_NS: i64 = 1_000_000_000;
 
 /// The ports of a source: what the simulator, a recording or real units hand out.
 #[derive(Debug)]
@@ -85,7 +88,12 @@ impl Feed {
             area.publish(&ImuSample { header, ..ImuSample::default() })?;
         }
         self.main.publish(&ImuSample { header, ..ImuSample::default() })?;
-        self.connection.beat.ended()
+        self.connection.beat.ended()?;
+        if self.connection.beat.health.given == 0 {
+            // started again after the run's end, it may be gone before its readers have noticed that it came
+            sleep_until(monotonic_ns() + STAY_NS);
+        }
+        Ok(())
     }
 
     /// What the source's health says, to be completed by the service.

@@ -5,10 +5,10 @@
 
 use super::autocovariance::detrend;
 use super::window::Point;
-use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
 use crate::matching::so3::symmetric;
-use messages::Solution;
-use nalgebra::Matrix3;
+use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
+use messages::{ImuPair, Solution};
+use nalgebra::{Matrix3, Vector3};
 
 /// What ties the two gyro attitudes together at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,11 +23,19 @@ pub struct Anchor {
     pub scale: Matrix3<f64>,
     /// Static part `S` of the deformation.
     pub fixed: Rot<Main, Sub>,
+    /// Covariance of the constant's error, rad^2, in the main unit's starting axes.
+    pub covariance: Matrix3<f64>,
 }
 
+/// The covariance of the constant is widened so much before the window's own data may correct it.
+const DOUBT: f64 = 9.0;
+/// For how long the rate of a flexure keeps its sign, s: so many points of it count as one.
+const CORRELATION_S: f64 = 2.0;
+
 impl Anchor {
-    /// The anchor of a solution; `None` if it is not finite.
-    pub fn of(solution: &Solution) -> Option<Self> {
+    /// The anchor of a solution and its pair; `None` if it is not finite.
+    pub fn of(pair: &ImuPair, solution: &Solution) -> Option<Self> {
+        let a_m = Rot::<MainStart, Main>::from_quaternion(pair.attitude_m)?.matrix();
         let drift = Vec3::from(solution.drift);
         let scale = symmetric(&solution.scale.into());
         Some(Self {
@@ -36,6 +44,7 @@ impl Anchor {
             drift: drift.is_finite().then_some(drift)?,
             scale: scale.iter().all(|x| x.is_finite()).then_some(scale)?,
             fixed: Rot::from_quaternion(solution.static_q)?,
+            covariance: a_m * Matrix3::from_row_slice(&solution.covariance) * a_m.transpose(),
         })
     }
 
@@ -88,19 +97,51 @@ impl Chain {
         let angles: Vec<Vec3<Main>> = points.iter().zip(&constants).map(angle).collect();
         let step_s = typical_step(points)?;
         let mut rates: [Vec<f64>; 3] = Default::default();
+        let mut turns = Vec::with_capacity(points.len());
         for (times, pair) in points.windows(2).zip(angles.windows(2)) {
             let step = unit::seconds(times[1].time_ns - times[0].time_ns);
             // Lost points are filled with the mean rate, so that a lag stays a number of steps.
             let steps = (step / step_s).round().max(1.0) as usize;
             let rate = (pair[1] - pair[0]) / step;
+            let seen = |point: &Point| point.attitude_m.inverse().matrix();
+            turns.extend(std::iter::repeat_n((seen(&times[1]) - seen(&times[0])) / step, steps));
             for (axis, value) in rate.array().into_iter().enumerate() {
                 rates[axis].extend(std::iter::repeat_n(value, steps));
             }
         }
         rates.iter_mut().for_each(|axis| detrend(axis));
+        correct(&mut rates, &turns, step_s, &anchor.covariance);
         let variance = rates.iter().flatten().map(|y| y * y).sum::<f64>() / rates[0].len() as f64;
         let end = Anchor { time_ns: points.last()?.time_ns, constant: *constants.last()?, ..*anchor };
         variance.is_finite().then_some(Self { rates, step_s, variance, end })
+    }
+}
+
+/// Takes out what an error of the constant makes of the ship's motion.
+///
+/// A wrong constant turns the motion into a false rate of flexure; a filter that believes in such a flexure never finds the right
+/// constant. The window's own data break the circle: the constant that leaves least, weighed against its covariance.
+fn correct(rates: &mut [Vec<f64>; 3], turns: &[Matrix3<f64>], step_s: f64, covariance: &Matrix3<f64>) {
+    let count = turns.len() as f64;
+    let weights = rates.each_ref().map(|axis| {
+        let variance = axis.iter().map(|y| y * y).sum::<f64>() / count;
+        (step_s / CORRELATION_S).min(1.0) / variance.max(f64::MIN_POSITIVE)
+    });
+    let Some(mut information) = (covariance * DOUBT).try_inverse() else { return };
+    let mut vector = Vector3::zeros();
+    for (j, turn) in turns.iter().enumerate() {
+        for axis in 0..3 {
+            let row = turn.row(axis);
+            information += row.transpose() * row * weights[axis];
+            vector += row.transpose() * (weights[axis] * rates[axis][j]);
+        }
+    }
+    let Some(error) = information.try_inverse().map(|inverse| inverse * vector) else { return };
+    if error.iter().all(|x| x.is_finite()) {
+        for (j, turn) in turns.iter().enumerate() {
+            let false_rate = turn * error;
+            (0..3).for_each(|axis| rates[axis][j] -= false_rate[axis]);
+        }
     }
 }
 

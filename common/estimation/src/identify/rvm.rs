@@ -59,7 +59,7 @@ impl Identifier for Rvm {
         if !due {
             return None;
         }
-        let chain = self.chain(&Anchor::of(solution)?)?;
+        let chain = self.chain(&Anchor::of(pair, solution)?)?;
         self.kept = Some(chain.end);
         let axes = self.identify(&chain)?;
         let length_s = self.window.length_s();

@@ -102,8 +102,13 @@ impl Grade {
 
     /// Variance, per second and per squared rate of turn, that the inconstant part of scale and misalignment adds.
     fn turning_variance(&self) -> f64 {
+        INCONSTANT * INCONSTANT * INCONSTANT_S * self.scale_variance()
+    }
+
+    /// Variance of a relative scale error, whether along an axis or across.
+    pub fn scale_variance(&self) -> f64 {
         let square = |gyro: &Gyro| gyro.scale.powi(2) + gyro.misalignment.powi(2);
-        INCONSTANT * INCONSTANT * INCONSTANT_S * (square(&self.main) + square(&self.sub))
+        square(&self.main) + square(&self.sub)
     }
 
     /// Variance of a matching measurement, rad^2.
@@ -111,10 +116,11 @@ impl Grade {
         MATCHING_SIGMA.powi(2) + (self.main.arw.powi(2) + self.sub.arw.powi(2)) * MATCHING_S
     }
 
-    /// The least standard deviation of a flexure that these gyros can tell from their own noise, rad: what the relative random
-    /// walk adds up to in ten seconds. Less must not be believed.
+    /// The least standard deviation of a flexure that these gyros can tell from their own errors, rad: what the relative random walk
+    /// adds up to in ten seconds and the bias's variation in two. Less must not be believed.
     pub fn least_flexure(&self) -> f64 {
-        self.main.arw.hypot(self.sub.arw) * f64::sqrt(10.0)
+        let walk = self.main.arw.hypot(self.sub.arw) * f64::sqrt(10.0);
+        walk.hypot(self.wander_variance().sqrt() * 2.0)
     }
 
     /// Variance of the relative bias's variation in the run, rad^2/s^2.
@@ -264,8 +270,9 @@ impl So3 {
         let since = &mut self.since;
         since.by_bias += a * step.time_s;
         since.by_scale += a * by_scale(dtheta);
-        since.walk +=
-            (self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2)) * step.time_s + step.disturbance.powi(2) + coning * coning
+        since.walk += (self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2)) * step.time_s
+            + step.disturbance.powi(2)
+            + coning * coning
             + self.grade.turning_variance() * rate.norm_squared() * step.time_s;
         since.stamps += change * change.transpose() * jitter;
         (self.a_m, self.a_s, self.rate_m, self.dtheta_m) = (step.a_m, step.a_s, rate, step.dtheta_m);
