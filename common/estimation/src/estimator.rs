@@ -86,7 +86,6 @@ pub struct So3Estimator {
     /// The set in force.
     params: Option<FlexureParams>,
     last_ns: Option<i64>,
-    late: u64,
     /// Flags that the next solution carries.
     news: Flags,
 }
@@ -129,14 +128,8 @@ impl So3Estimator {
             waiting: VecDeque::with_capacity(WAITING),
             params: None,
             last_ns: None,
-            late: 0,
             news: Flags::empty(),
         }
-    }
-
-    /// How many parameter sets came after their time.
-    pub fn late(&self) -> u64 {
-        self.late
     }
 
     fn adopt(&mut self, time_ns: i64) {
@@ -278,11 +271,10 @@ impl Estimator for So3Estimator {
         if !model(&params).iter().all(Flexure::is_sound) {
             return;
         }
-        if self.params.as_ref().is_some_and(known) || self.waiting.iter().any(|other| known(other)) {
+        if self.params.as_ref().is_some_and(known) || self.waiting.iter().any(known) {
             return;
         }
         if self.last_ns.is_some_and(|last_ns| last_ns >= params.effective_from_ns) {
-            self.late += 1;
             self.news |= Flags::LATE;
         }
         if self.waiting.len() == WAITING {
@@ -301,12 +293,12 @@ impl Estimator for So3Estimator {
         if self.params.is_none() && self.settings.flexure.is_none() {
             flags |= Flags::PRIOR;
         }
-        if let Phase::Running(running) = &mut self.phase {
-            if running.step(pair, &self.settings).is_none() {
-                self.phase = Phase::Registering { since_ns: None };
-                self.registrar = self.settings.registrar();
-                self.news |= Flags::RESET;
-            }
+        if let Phase::Running(running) = &mut self.phase
+            && running.step(pair, &self.settings).is_none()
+        {
+            self.phase = Phase::Registering { since_ns: None };
+            self.registrar = self.settings.registrar();
+            self.news |= Flags::RESET;
         }
         flags |= std::mem::take(&mut self.news);
         match &self.phase {
