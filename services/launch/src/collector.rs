@@ -3,11 +3,13 @@
 use crate::report::{AreaRow, Report, StageRow};
 use crate::set::Role;
 use crate::{LaunchError, Options};
-use messages::{Flags, FlexureParams, Health, Scheduling, Solution, Stage, State, Truth, topic};
+use messages::{
+    Flags, FlexureParams, Health, ImuPair, ImuSample, MainAttitude, Scheduling, Solution, Stage, State, Truth, topic,
+};
 use pipeline::configuration::{Configuration, Source};
 use pipeline::solution_file::SolutionFile;
 use pipeline::summary::{Figures, Summary};
-use runtime::{IntervalLog, Latency, Node, Sequence, Subscriber, TransportError, Wake};
+use runtime::{Anchor, IntervalLog, Latency, Node, Sequence, Subscriber, TransportError, Wake};
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -21,6 +23,26 @@ const LOG_INTERVAL: Duration = Duration::from_secs(10);
 pub struct Ports {
     areas: Vec<AreaPorts>,
     health: Vec<(Role, Subscriber<Health>)>,
+    _anchors: Anchors,
+}
+
+/// Holds the topics that the launcher does not read: a stage killed while it makes a topic then leaves nothing half made.
+struct Anchors {
+    _samples: Vec<Anchor<ImuSample>>,
+    _attitude: Anchor<MainAttitude>,
+    _pairs: Vec<Anchor<ImuPair>>,
+}
+
+impl Anchors {
+    fn open(node: &Node, configuration: &Configuration) -> Result<Self, TransportError> {
+        let mut samples = vec![Anchor::open(node, &topic::main_imu())?];
+        let mut pairs = Vec::new();
+        for area in &configuration.areas {
+            samples.push(Anchor::open(node, &topic::area_imu(&area.name))?);
+            pairs.push(Anchor::open(node, &topic::pair(&area.name))?);
+        }
+        Ok(Self { _samples: samples, _attitude: Anchor::open(node, &topic::main_attitude())?, _pairs: pairs })
+    }
 }
 
 struct AreaPorts {
@@ -168,7 +190,8 @@ impl Collector {
         for counted in self.health.values_mut() {
             counted.retire();
         }
-        let mut ports = Ports { areas: Vec::new(), health: Vec::new() };
+        let _anchors = Anchors::open(node, configuration)?;
+        let mut ports = Ports { areas: Vec::new(), health: Vec::new(), _anchors };
         for (index, area) in configuration.areas.iter().enumerate() {
             let name = area.name.as_str();
             ports.areas.push(AreaPorts {

@@ -140,7 +140,11 @@ impl fmt::Display for Report {
         };
         for (area, counts) in self.summary.areas.iter().zip(&self.counts) {
             writeln!(f, "area {}: {} solutions, {:.1} % valid", area.name, area.samples, 100.0 * area.valid_fraction)?;
-            writeln!(f, "  installation    {} deg (by motion, rotation vector in m)", three(&area.installation_deg, 4))?;
+            writeln!(
+                f,
+                "  installation    {} deg (by motion, rotation vector in m)",
+                three(&area.installation_deg, 4)
+            )?;
             writeln!(f, "  static part     {} deg (by the filter)", three(&area.static_deg, 4))?;
             writeln!(f, "  sigma           {} arcsec", three(&area.sigma_arcsec, 1))?;
             if area.rmse_arcsec.is_some() {
