@@ -1,6 +1,7 @@
 //! What the launcher hears of its set: solutions, parameters, truth and health; latencies and files come of it.
 
-use crate::report::{AreaRow, Report, StageRow};
+use crate::recorded::Recorded;
+use crate::report::{AreaRow, Percentiles, Report, StageRow};
 use crate::set::Role;
 use crate::{LaunchError, Options};
 use messages::{
@@ -9,15 +10,11 @@ use messages::{
 use pipeline::configuration::{Configuration, Source};
 use pipeline::solution_file::SolutionFile;
 use pipeline::summary::{Figures, Summary};
-use runtime::{Anchor, IntervalLog, Latency, Node, Sequence, Subscriber, TransportError, Wake};
+use runtime::{Anchor, Latency, Node, Sequence, Subscriber, TransportError, Wake};
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{BufWriter, Write};
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime};
-
-/// Length of an interval of the latency logs.
-const LOG_INTERVAL: Duration = Duration::from_secs(10);
+use std::path::PathBuf;
 
 /// The launcher's readers in one domain.
 pub struct Ports {
@@ -100,63 +97,6 @@ struct Totals {
     taken: u64,
     given: u64,
     lost: u64,
-}
-
-/// A latency, whole and by intervals.
-struct Recorded {
-    whole: Latency,
-    log: Option<(IntervalLog<BufWriter<File>>, Latency, Instant, Instant)>,
-}
-
-impl Recorded {
-    fn new(folder: Option<&Path>, name: &str) -> Result<Self, LaunchError> {
-        let log = match folder {
-            None => None,
-            Some(folder) => {
-                let path = folder.join(format!("{name}.hlog"));
-                let file = File::create(&path).map_err(LaunchError::output(&path))?;
-                let log = IntervalLog::begin(
-                    BufWriter::new(file),
-                    SystemTime::now(),
-                    &format!("deckflex {name}, nanoseconds"),
-                )?;
-                let now = Instant::now();
-                Some((log, Latency::new(), now, now))
-            }
-        };
-        Ok(Self { whole: Latency::new(), log })
-    }
-
-    fn record(&mut self, from_ns: i64, to_ns: i64) -> Result<(), TransportError> {
-        if from_ns == 0 || to_ns == 0 {
-            return Ok(());
-        }
-        self.whole.record(to_ns - from_ns);
-        if let Some((_, interval, _, since)) = &mut self.log {
-            interval.record(to_ns - from_ns);
-            if since.elapsed() >= LOG_INTERVAL {
-                return self.rotate();
-            }
-        }
-        Ok(())
-    }
-
-    fn rotate(&mut self) -> Result<(), TransportError> {
-        if let Some((log, interval, start, since)) = &mut self.log {
-            log.write("latency", since.duration_since(*start), since.elapsed(), interval)?;
-            interval.clear();
-            *since = Instant::now();
-        }
-        Ok(())
-    }
-
-    fn finish(&mut self) -> Result<(), TransportError> {
-        self.rotate()?;
-        if let Some((log, ..)) = self.log.take() {
-            log.finish()?;
-        }
-        Ok(())
-    }
 }
 
 impl Collector {
@@ -312,7 +252,6 @@ impl Collector {
 
     fn row(&self, role: Role, restarts: &[(Role, u64)], area: &str, latency: &Latency, wait_us: f64) -> StageRow {
         let counted = self.health.get(&role).copied().unwrap_or_default();
-        let summary = latency.summary();
         StageRow {
             name: role.stage.name(),
             area: area.to_owned(),
@@ -321,12 +260,7 @@ impl Collector {
             lost: counted.past.lost + counted.now.lost,
             restarts: restarts.iter().find(|(known, _)| *known == role).map_or(0, |(_, n)| *n),
             overflow: counted.now.overflow,
-            p50_us: summary.p50_us,
-            p90_us: summary.p90_us,
-            p99_us: summary.p99_us,
-            p999_us: summary.p999_us,
-            max_us: summary.max_us,
-            wait_us,
+            latency: Percentiles::of(latency, wait_us),
         }
     }
 }
@@ -416,7 +350,6 @@ impl AreaRecord {
     }
 
     fn row(&self) -> AreaRow {
-        let summary = self.end_to_end.whole.summary();
         AreaRow {
             area: self.name.clone(),
             pairs: self.received,
@@ -424,12 +357,7 @@ impl AreaRecord {
             parameters: self.parameters,
             late_parameters: self.late,
             first_parameters_s: self.first_parameters_s,
-            p50_us: summary.p50_us,
-            p90_us: summary.p90_us,
-            p99_us: summary.p99_us,
-            p999_us: summary.p999_us,
-            max_us: summary.max_us,
-            wait_us: self.wait.whole.summary().p50_us,
+            latency: Percentiles::of(&self.end_to_end.whole, self.wait.whole.summary().p50_us),
         }
     }
 

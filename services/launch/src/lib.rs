@@ -2,12 +2,13 @@
 
 mod collector;
 mod error;
+mod recorded;
 mod report;
 mod set;
 mod status;
 
 pub use error::LaunchError;
-pub use report::Report;
+pub use report::{AreaRow, Percentiles, Report, StageRow};
 
 use collector::Collector;
 use pipeline::configuration::{Configuration, SchedulingChoice};

@@ -1,5 +1,6 @@
 //! The table at the end of a launch, and the same as JSON.
 
+use runtime::{Latency, Summary};
 use serde::Serialize;
 use std::fmt;
 
@@ -26,6 +27,38 @@ pub struct Report {
     pub end_to_end: Vec<AreaRow>,
 }
 
+/// A latency in figures, microseconds.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Percentiles {
+    /// Median.
+    pub p50_us: f64,
+    /// What one in 10 exceeds.
+    pub p90_us: f64,
+    /// What one in 100 exceeds.
+    pub p99_us: f64,
+    /// What one in 1000 exceeds.
+    pub p999_us: f64,
+    /// The largest.
+    pub max_us: f64,
+    /// Median of the time that the algorithm has to wait for later samples.
+    pub wait_us: f64,
+}
+
+impl Percentiles {
+    /// The figures of a histogram beside the algorithm's wait.
+    pub fn of(latency: &Latency, wait_us: f64) -> Self {
+        let Summary { p50_us, p90_us, p99_us, p999_us, max_us, .. } = latency.summary();
+        Self { p50_us, p90_us, p99_us, p999_us, max_us, wait_us }
+    }
+}
+
+impl fmt::Display for Percentiles {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let columns = [self.wait_us, self.p50_us, self.p90_us, self.p99_us, self.p999_us, self.max_us];
+        columns.iter().try_for_each(|us| write!(f, " {us:>9.0}"))
+    }
+}
+
 /// Counts and latency of a stage: from the moment its last input was published to its own output.
 #[derive(Clone, Debug, Serialize)]
 pub struct StageRow {
@@ -45,18 +78,9 @@ pub struct StageRow {
     pub restarts: u64,
     /// Messages dropped inside the stage.
     pub overflow: u64,
-    /// Median latency.
-    pub p50_us: f64,
-    /// What one in 10 exceeds.
-    pub p90_us: f64,
-    /// What one in 100 exceeds.
-    pub p99_us: f64,
-    /// What one in 1000 exceeds.
-    pub p999_us: f64,
-    /// The largest.
-    pub max_us: f64,
-    /// Median of the time that the algorithm has to wait for later samples.
-    pub wait_us: f64,
+    /// Its latency.
+    #[serde(flatten)]
+    pub latency: Percentiles,
 }
 
 /// The whole way of one area.
@@ -74,18 +98,9 @@ pub struct AreaRow {
     pub late_parameters: u64,
     /// Data time of the first parameter set after the first solution, s.
     pub first_parameters_s: Option<f64>,
-    /// Median latency.
-    pub p50_us: f64,
-    /// What one in 10 exceeds.
-    pub p90_us: f64,
-    /// What one in 100 exceeds.
-    pub p99_us: f64,
-    /// What one in 1000 exceeds.
-    pub p999_us: f64,
-    /// The largest.
-    pub max_us: f64,
-    /// Median of the algorithm's wait.
-    pub wait_us: f64,
+    /// Its latency.
+    #[serde(flatten)]
+    pub latency: Percentiles,
 }
 
 impl fmt::Display for Report {
@@ -107,22 +122,12 @@ impl fmt::Display for Report {
             "max us"
         )?;
         for row in &self.stages {
-            let tail = [row.wait_us, row.p50_us, row.p90_us, row.p99_us, row.p999_us, row.max_us];
-            write!(
-                f,
-                "{:<12} {:<12} {:>8} {:>8} {:>5} {:>8}",
-                row.name, row.area, row.taken, row.given, row.lost, row.restarts
-            )?;
-            figures(f, tail)?;
+            let StageRow { name, area, taken, given, lost, restarts, latency, .. } = row;
+            writeln!(f, "{name:<12} {area:<12} {taken:>8} {given:>8} {lost:>5} {restarts:>8}{latency}")?;
         }
         for row in &self.end_to_end {
-            let tail = [row.wait_us, row.p50_us, row.p90_us, row.p99_us, row.p999_us, row.max_us];
-            write!(
-                f,
-                "{:<12} {:<12} {:>8} {:>8} {:>5} {:>8}",
-                "end to end", row.area, row.pairs, row.pairs, row.lost, ""
-            )?;
-            figures(f, tail)?;
+            let AreaRow { area, pairs, lost, latency, .. } = row;
+            writeln!(f, "{:<12} {area:<12} {pairs:>8} {pairs:>8} {lost:>5} {:>8}{latency}", "end to end", "")?;
         }
         for row in &self.end_to_end {
             let first = row.first_parameters_s.map_or("none".to_owned(), |s| format!("first after {s:.1} s of data"));
@@ -142,9 +147,4 @@ impl fmt::Display for Report {
         }
         Ok(())
     }
-}
-
-fn figures(f: &mut fmt::Formatter<'_>, tail: [f64; 6]) -> fmt::Result {
-    tail.iter().try_for_each(|us| write!(f, " {us:>9.0}"))?;
-    writeln!(f)
 }
