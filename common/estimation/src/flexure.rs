@@ -55,11 +55,14 @@ impl Flexure {
         } else if k > 0.0 {
             let l = k.sqrt();
             (decay * (l * t).cos(), decay * (l * t).sin() / l)
-        } else {
-            // the products, not the factors: a hyperbolic cosine alone would overflow
+        } else if (-square) < 300.0 * 300.0 {
             let l = (-k).sqrt();
-            let (slow, fast) = (((l - self.mu) * t).exp(), ((-l - self.mu) * t).exp());
-            (0.5 * (slow + fast), 0.5 * (slow - fast) / l)
+            (decay * (l * t).cosh(), decay * (l * t).sinh() / l)
+        } else {
+            // the hyperbolic functions would overflow; the faster of their two exponentials is nothing by then
+            let l = (-k).sqrt();
+            let slow = 0.5 * ((l - self.mu) * t).exp();
+            (slow, slow / l)
         }
     }
 

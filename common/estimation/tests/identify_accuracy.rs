@@ -22,7 +22,7 @@ fn chain(scene: Scene, window_s: f64) -> Chain {
     loop {
         let (pair, solution) = run.next();
         if window.take(&pair, &solution) {
-            return Chain::rebuild(window.points(), &Anchor::of(&solution).unwrap()).unwrap();
+            return Chain::rebuild(window.points(), &Anchor::of(&pair, &solution).unwrap()).unwrap();
         }
     }
 }

@@ -1,4 +1,5 @@
 //! Properties of rotations, half turns and tiny angles included.
+#![allow(clippy::unwrap_used)]
 
 use frames::{Euler, Main, Nav, Rot, Sub, Vec3, unit};
 use proptest::prelude::*;

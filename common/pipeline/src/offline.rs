@@ -47,11 +47,20 @@ impl Lane {
     }
 }
 
-/// Runs a configuration from its first sample to its last; gives what became of each area's samples.
+/// What became of the samples of a run.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Outcome {
+    /// By area; a sample of the main unit counts in each.
+    pub areas: Vec<Counts>,
+    /// Rows of the recordings that could not be read.
+    pub unreadable_rows: u64,
+}
+
+/// Runs a configuration from its first sample to its last.
 ///
 /// # Errors
 /// A recording cannot be opened.
-pub fn run(configuration: &Configuration, sink: &mut dyn Sink) -> Result<Vec<Counts>, RecordingError> {
+pub fn run(configuration: &Configuration, sink: &mut dyn Sink) -> Result<Outcome, RecordingError> {
     let mut source = Source::open(configuration, 0)?;
     let mut lanes: Vec<Lane> = (0..configuration.areas.len()).map(|area| Lane::new(configuration, area)).collect();
     let mut batch = Batch::default();
@@ -70,5 +79,6 @@ pub fn run(configuration: &Configuration, sink: &mut dyn Sink) -> Result<Vec<Cou
         lane.synchroniser.end();
         lane.work_off(sink);
     }
-    Ok(lanes.iter().map(|lane| lane.synchroniser.counts()).collect())
+    let areas = lanes.iter().map(|lane| lane.synchroniser.counts()).collect();
+    Ok(Outcome { areas, unreadable_rows: source.unreadable_rows() })
 }

@@ -58,6 +58,14 @@ impl Source {
         }
     }
 
+    /// How many rows of recordings could not be read.
+    pub fn unreadable_rows(&self) -> u64 {
+        match self {
+            Self::Simulated(_) => 0,
+            Self::Recorded(recorded) => recorded.refused(),
+        }
+    }
+
     /// Fills in the next batch; `false` at the end of the run.
     pub fn next(&mut self, batch: &mut Batch) -> bool {
         match self {

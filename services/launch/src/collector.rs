@@ -244,6 +244,7 @@ impl Collector {
             scheduling: scheduling.name(),
             rate_hz: configuration.rate_hz,
             missing_samples: missing,
+            refused_samples: self.health.values().map(|counted| counted.now.refused).sum(),
             cut_short: self.cut_short,
             stages,
             end_to_end,

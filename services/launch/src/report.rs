@@ -19,6 +19,8 @@ pub struct Report {
     pub rate_hz: f64,
     /// Samples that were missing in the units' own streams.
     pub missing_samples: u64,
+    /// Samples and rows that were refused: not finite, repeated, out of time, unreadable.
+    pub refused_samples: u64,
     /// Whether the streams had to be given up before their end marks.
     pub cut_short: bool,
     /// One row a stage and area.
@@ -139,8 +141,8 @@ impl fmt::Display for Report {
         }
         writeln!(
             f,
-            "scheduling obtained: {}; samples missing in the units' own streams: {}",
-            self.scheduling, self.missing_samples
+            "scheduling obtained: {}; samples missing in the units' own streams: {}, refused: {}",
+            self.scheduling, self.missing_samples, self.refused_samples
         )?;
         if self.cut_short {
             writeln!(f, "the streams did not end in time and were cut short")?;

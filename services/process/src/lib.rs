@@ -4,7 +4,7 @@ use estimation::synchronise::Counts;
 use indicatif::{ProgressBar, ProgressStyle};
 use messages::{Solution, Truth};
 use pipeline::configuration::Configuration;
-use pipeline::offline::{self, Sink};
+use pipeline::offline::{self, Outcome, Sink};
 use pipeline::recording::RecordingError;
 use pipeline::solution_file::SolutionFile;
 use pipeline::summary::{Figures, Summary};
@@ -35,8 +35,8 @@ pub enum ProcessError {
 pub struct Report {
     /// The figures that `summary.json` holds.
     pub summary: Summary,
-    /// What became of each area's samples.
-    pub counts: Vec<Counts>,
+    /// What became of the samples.
+    pub outcome: Outcome,
     /// How long it took.
     pub elapsed: Duration,
     /// Solutions a second over all areas.
@@ -55,14 +55,14 @@ pub fn run(configuration: &Configuration, out: &Path) -> Result<Report, ProcessE
     std::fs::create_dir_all(out).map_err(failed(out))?;
     let mut writer = Writer::create(configuration, out).map_err(failed(out))?;
     let start = Instant::now();
-    let counts = offline::run(configuration, &mut writer)?;
+    let outcome = offline::run(configuration, &mut writer)?;
     let elapsed = start.elapsed();
     writer.progress.finish_and_clear();
     let solutions = writer.areas.iter().map(|area| area.figures.summary().samples).sum::<u64>();
     let path = out.join("summary.json");
     let summary = writer.finish().map_err(failed(out))?;
     summary.write(&path).map_err(failed(&path))?;
-    Ok(Report { summary, counts, elapsed, rate: solutions as f64 / elapsed.as_secs_f64() })
+    Ok(Report { summary, outcome, elapsed, rate: solutions as f64 / elapsed.as_secs_f64() })
 }
 
 /// Takes the loop's output to the files.
@@ -138,7 +138,7 @@ impl fmt::Display for Report {
             Some([x, y, z]) => format!("{x:.digits$} {y:.digits$} {z:.digits$}"),
             None => "unknown".to_owned(),
         };
-        for (area, counts) in self.summary.areas.iter().zip(&self.counts) {
+        for (area, counts) in self.summary.areas.iter().zip(&self.outcome.areas) {
             writeln!(f, "area {}: {} solutions, {:.1} % valid", area.name, area.samples, 100.0 * area.valid_fraction)?;
             writeln!(
                 f,
@@ -161,6 +161,9 @@ impl fmt::Display for Report {
             }
             let Counts { missing, refused, suspect } = counts;
             writeln!(f, "  samples missing {missing}, refused {refused}, suspect {suspect}")?;
+        }
+        if self.outcome.unreadable_rows > 0 {
+            writeln!(f, "{} rows of the recordings could not be read", self.outcome.unreadable_rows)?;
         }
         write!(f, "{:.2} s, {:.0} solutions a second", self.elapsed.as_secs_f64(), self.rate)
     }
