@@ -100,7 +100,10 @@ fn what_must_not_meet_does_not_meet() {
         let tree = tree(name);
         assert!(tree.contains(name), "the tree is not that of {name}");
         for import in forbidden {
-            assert!(!tree.contains(*import), "{import} is in the tree of {name}: see `cargo tree -i {import} -p {name}`");
+            assert!(
+                !tree.contains(*import),
+                "{import} is in the tree of {name}: see `cargo tree -i {import} -p {name}`"
+            );
         }
     }
 }
@@ -144,7 +147,8 @@ fn only_the_shell_has_clocks_and_threads() {
             for (number, line) in fs::read_to_string(&file).unwrap().lines().enumerate() {
                 let code = line.split("//").next().unwrap();
                 let words: Vec<&str> = code.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
-                let found = words.iter().find(|word| ["Instant", "SystemTime", "thread", "sleep", "libc"].contains(word));
+                let found =
+                    words.iter().find(|word| ["Instant", "SystemTime", "thread", "sleep", "libc"].contains(word));
                 assert_eq!(found, None, "{}:{}: {line}", file.display(), number + 1);
                 lines += 1;
             }
@@ -158,7 +162,8 @@ fn the_top_of_the_repository_is_fixed() {
     let Ok(output) = Command::new("git").args(["ls-files", "-z"]).current_dir(root()).output() else { return };
     // no checkout, or one of another repository around a plain copy
     let paths = String::from_utf8(output.stdout).unwrap();
-    let top: BTreeSet<&str> = paths.split('\0').filter_map(|path| path.split('/').next()).filter(|t| !t.is_empty()).collect();
+    let top: BTreeSet<&str> =
+        paths.split('\0').filter_map(|path| path.split('/').next()).filter(|t| !t.is_empty()).collect();
     if !output.status.success() || !top.contains("Cargo.toml") {
         return;
     }

@@ -11,7 +11,8 @@ use std::process::Output;
 const UNUSABLE: i32 = 2;
 
 /// Each command that reads a configuration.
-const COMMANDS: [&[&str]; 3] = [&["check"], &["launch", "--duration", "1s"], &["process", "--duration", "1s", "--out", "out"]];
+const COMMANDS: [&[&str]; 3] =
+    [&["check"], &["launch", "--duration", "1s"], &["process", "--duration", "1s", "--out", "out"]];
 
 fn deckflex(place: &Place, arguments: &[&str]) -> Output {
     place.deckflex().args(arguments).current_dir(place.path("")).output().unwrap()
@@ -49,7 +50,9 @@ fn line_of(text: &str, what: &str) -> String {
 #[test]
 fn a_misspelt_key_is_named_with_its_line_and_the_nearest_key() {
     let place = Place::new();
-    for (right, wrong) in [("lever_arm_m", "lever_arm"), ("bias_deg_per_h", "bias_deg_per_hour"), ("window_s", "windows_s")] {
+    for (right, wrong) in
+        [("lever_arm_m", "lever_arm"), ("bias_deg_per_h", "bias_deg_per_hour"), ("window_s", "windows_s")]
+    {
         let text = shipped("demo.toml").replacen(right, wrong, 1);
         place.write("demo.toml", &text);
         let line = format!("demo.toml{}", line_of(&text, wrong));
@@ -60,7 +63,9 @@ fn a_misspelt_key_is_named_with_its_line_and_the_nearest_key() {
 #[test]
 fn a_value_out_of_range_is_named_with_its_line_and_the_range() {
     let place = Place::new();
-    for (key, value, range) in [("rate_hz", "-100", "10 to 1000"), ("rate_hz", "nan", "10 to 1000"), ("period_s", "0", "0.1 to 86400")] {
+    for (key, value, range) in
+        [("rate_hz", "-100", "10 to 1000"), ("rate_hz", "nan", "10 to 1000"), ("period_s", "0", "0.1 to 86400")]
+    {
         let text = changed(&shipped("demo.toml"), &[(key, value)]);
         place.write("demo.toml", &text);
         let line = format!("demo.toml{}", line_of(&text, &format!("{key} = {value}")));
@@ -75,7 +80,11 @@ fn a_file_that_is_not_there_is_named() {
     let text = shipped("replay.toml");
     place.write("replay.toml", &text);
     let line = format!("replay.toml{}", line_of(&text, "recordings/radar.csv"));
-    assert_refused(&place, "replay.toml", &[&line, "recordings/main.csv", "recordings/radar.csv", "area[0].source.path"]);
+    assert_refused(
+        &place,
+        "replay.toml",
+        &[&line, "recordings/main.csv", "recordings/radar.csv", "area[0].source.path"],
+    );
 }
 
 #[test]
@@ -150,7 +159,9 @@ fn help_names_every_command() {
         let output = deckflex(&place, &[command, "--help"]);
         assert!(output.status.success() && !output.stdout.is_empty(), "{command}");
     }
-    for wrong in [&[][..], &["lunch"], &["launch"], &["launch", "demo.toml", "--duration", "long"], &["process", "demo.toml"]] {
+    for wrong in
+        [&[][..], &["lunch"], &["launch"], &["launch", "demo.toml", "--duration", "long"], &["process", "demo.toml"]]
+    {
         let output = deckflex(&place, wrong);
         assert_eq!(output.status.code(), Some(UNUSABLE), "{wrong:?}");
         assert!(stderr(&output).contains("Usage:") || stderr(&output).contains("--help"), "{wrong:?}");

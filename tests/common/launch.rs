@@ -88,10 +88,12 @@ impl Launch {
         })
     }
 
-    /// The rows of an area that have reached the file by now.
-    pub fn written(&self, area: &str) -> String {
-        let text = fs::read_to_string(pipeline::solution_file::path(&self.out, area)).unwrap_or_default();
-        text.rsplit_once('\n').map_or(String::new(), |(whole, _)| format!("{whole}\n"))
+    /// The heading and the last whole row that have reached an area's file by now.
+    pub fn written(&self, area: &str) -> Option<String> {
+        let text = fs::read_to_string(pipeline::solution_file::path(&self.out, area)).ok()?;
+        let (whole, _) = text.rsplit_once('\n')?;
+        let (heading, rows) = whole.split_once('\n')?;
+        Some(format!("{heading}\n{}\n", rows.lines().last()?))
     }
 
     /// Waits until something can be seen; fails when the launch ends before.

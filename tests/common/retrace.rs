@@ -77,11 +77,11 @@ pub fn sets(rows: &BTreeMap<u64, Row>) -> Vec<u64> {
     ids
 }
 
-/// Computes the rows of the first area by the pure steps and compares them, bit by bit.
+/// Computes the rows of the first area by the pure steps and compares them, bit by bit; gives how many parameter sets were learnt.
 ///
 /// Each parameter set is offered where the column says that it came into force; its values come from the identifier's own steps over
 /// the same pairs and solutions.
-pub fn retrace(configuration: &Configuration, text: &str, story: &Story) -> Result<(), String> {
+pub fn retrace(configuration: &Configuration, text: &str, story: &Story) -> Result<u64, String> {
     let rows = rows(configuration, text);
     let mut pairs = pairs(configuration, &rows, story);
     let mut estimator = lane::estimator(configuration, 0);
@@ -107,7 +107,7 @@ pub fn retrace(configuration: &Configuration, text: &str, story: &Story) -> Resu
         known.extend(identifier.step(&pair, &solution).map(|set| (set.id, set)));
     }
     let again = String::from_utf8(file.finish().unwrap()).unwrap();
-    first_difference(text, &again).map_or(Ok(()), Err)
+    first_difference(text, &again).map_or(Ok(known.len() as u64), Err)
 }
 
 /// The pairs that the synchroniser makes of the samples that were there.
