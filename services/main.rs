@@ -69,6 +69,9 @@ struct StageArgs {
     /// When the first sample is due, on the monotonic clock
     #[arg(long, value_name = "NS", default_value_t = 0)]
     epoch_ns: i64,
+    /// Take the place of a stage that died
+    #[arg(long)]
+    resume: bool,
     #[arg(long, value_parser = humantime::parse_duration)]
     duration: Option<Duration>,
 }
@@ -196,6 +199,7 @@ fn context(configuration: &Configuration, args: &StageArgs) -> Context {
         domain: args.domain.clone(),
         run_id: args.run_id,
         epoch_ns: args.epoch_ns,
+        resume: args.resume,
         scheduling: launch::request(configuration.run.scheduling),
     }
 }

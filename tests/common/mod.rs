@@ -3,6 +3,7 @@
 
 pub mod launch;
 pub mod retrace;
+pub mod run;
 
 use frames::{Main, Nav, Rot, unit};
 use messages::{FlexureParams, ImuSample, Solution};

@@ -12,6 +12,8 @@ pub struct Context {
     pub run_id: u64,
     /// When the run's first sample was or is due, ns of the monotonic clock; kept over restarts.
     pub epoch_ns: i64,
+    /// Whether the stage takes the place of one that died: a source then goes on at the present instead of catching up.
+    pub resume: bool,
     /// The scheduling class of the fast stages.
     pub scheduling: Request,
 }

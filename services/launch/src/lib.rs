@@ -62,6 +62,7 @@ pub fn run(configuration: &Configuration, options: &Options) -> Result<Report, L
             domain: domain.root().to_path_buf(),
             run_id,
             epoch_ns: 0,
+            resume: false,
             scheduling: request(configuration.run.scheduling),
         };
         let mut set = Set::new(configuration, options, context, std::mem::take(&mut restarts));
@@ -120,7 +121,8 @@ fn attend(
             if configuration.run.scheduling == SchedulingChoice::Fifo && !collector.all_fifo() {
                 return Err(LaunchError::NoRealTime);
             }
-            set.start_source(*epoch_ns.get_or_insert(now_ns + RUN_UP_NS))?;
+            let resume = epoch_ns.is_some();
+            set.start_source(*epoch_ns.get_or_insert(now_ns + RUN_UP_NS), resume)?;
         }
         if stop.requested() && until_ns.is_none() {
             until_ns = Some(now_ns + WORK_OFF_NS);

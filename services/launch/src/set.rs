@@ -104,9 +104,11 @@ impl Set {
     }
 
     /// Starts the source, whose first sample is due at `epoch_ns`.
-    pub fn start_source(&mut self, epoch_ns: i64) -> Result<(), LaunchError> {
+    ///
+    /// With `resume` the run is under way already, in an earlier domain.
+    pub fn start_source(&mut self, epoch_ns: i64, resume: bool) -> Result<(), LaunchError> {
         let Self { members, command, source } = self;
-        command.context.epoch_ns = epoch_ns;
+        (command.context.epoch_ns, command.context.resume) = (epoch_ns, resume);
         members.iter_mut().filter(|member| member.role == *source).try_for_each(|member| member.start(command))
     }
 
@@ -182,8 +184,9 @@ impl Drop for Set {
 
 impl Member {
     fn start(&mut self, command: &Spawner) -> Result<(), LaunchError> {
-        let child =
-            command.spawn(self.role).map_err(|source| LaunchError::Start { stage: self.name.clone(), source })?;
+        let child = command
+            .spawn(self.role, self.restarts > 0)
+            .map_err(|source| LaunchError::Start { stage: self.name.clone(), source })?;
         self.child = Some(child);
         self.started_ns = monotonic_ns();
         self.due_ns = i64::MAX;
@@ -211,12 +214,15 @@ impl Spawner {
         }
     }
 
-    fn spawn(&self, role: Role) -> std::io::Result<Child> {
+    fn spawn(&self, role: Role, restarted: bool) -> std::io::Result<Child> {
         let mut command = Command::new(&self.options.program);
         command.arg(role.stage.name()).arg(&self.options.configuration);
         command.arg("--domain").arg(&self.context.domain);
         command.args(["--run-id", &self.context.run_id.to_string()]);
         command.args(["--epoch-ns", &self.context.epoch_ns.to_string()]);
+        if restarted || self.context.resume {
+            command.arg("--resume");
+        }
         if let Some(area) = role.area {
             command.args(["--area", &self.areas[area]]);
         }

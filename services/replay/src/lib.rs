@@ -37,7 +37,7 @@ pub fn run(configuration: &Configuration, context: &Context) -> Result<(), Repla
         let due_ns = context.epoch_ns + (since_ns as f64 / configuration.replay_pace) as i64;
         let delivery =
             Delivery { main: &batch.main, attitude: batch.attitude.as_ref(), sub: &batch.sub, truth: &batch.truth };
-        if due_ns < started_ns {
+        if context.resume && due_ns < started_ns {
             feed.skip(&delivery);
         } else if sleep_until(due_ns) || !stop.requested() {
             feed.publish(due_ns, &delivery)?;

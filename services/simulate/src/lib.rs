@@ -23,7 +23,7 @@ pub fn run(configuration: &Configuration, context: &Context) -> Result<(), Trans
         let due_ns = context.epoch_ns + epoch.main.header.time_ns;
         let delivery =
             Delivery { main: &epoch.main, attitude: Some(&epoch.attitude), sub: &epoch.sub, truth: &epoch.truth };
-        if due_ns < started_ns {
+        if context.resume && due_ns < started_ns {
             feed.skip(&delivery);
         } else if sleep_until(due_ns) || !stop.requested() {
             feed.publish(due_ns, &delivery)?;
