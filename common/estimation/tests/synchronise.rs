@@ -3,7 +3,7 @@
 
 use estimation::synchronise::{Settings, Synchroniser, Unit};
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
-use messages::{Flags, ImuPair, ImuSample};
+use messages::{Flags, ImuPair, ImuSample, MainAttitude};
 use proptest::prelude::*;
 
 const T: i64 = 10_000_000;
@@ -258,5 +258,20 @@ proptest! {
         }
         synchroniser.end();
         while synchroniser.pair().is_some() {}
+    }
+}
+
+#[test]
+fn attitudes_wait_for_their_samples_however_many_come_at_once() {
+    let mut synchroniser = Synchroniser::new(settings());
+    for k in 0..1000 {
+        let mut attitude = MainAttitude { q: [1.0, 0.0, 0.0, 0.0], ..Default::default() };
+        attitude.header.sequence = k;
+        synchroniser.attitude(&attitude);
+    }
+    for (m, s) in main_samples(1000).iter().zip(&sub_samples(1000, 0)) {
+        synchroniser.main(m);
+        synchroniser.sub(s);
+        assert_eq!(synchroniser.pair().unwrap().ins, [1.0, 0.0, 0.0, 0.0]);
     }
 }

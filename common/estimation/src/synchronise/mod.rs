@@ -45,8 +45,8 @@ pub struct Settings {
 const NEAR: f64 = 0.01;
 /// The longest hole that is bridged, in nominal intervals.
 const BRIDGE: i64 = 6;
-/// Attitudes of the main INS that wait for their sample.
-const INS_DEPTH: usize = 16;
+/// Attitudes of the main INS that may wait for their sample: a stage that stood still finds as many as its topic holds.
+const INS_DEPTH: usize = 4096;
 /// Nodes of the sub unit that may wait for the main unit: 20 s at 200 Hz.
 const SUB_DEPTH: usize = 4096;
 
@@ -94,7 +94,7 @@ impl Synchroniser {
             settings,
             main: Stream::new(settings.main, settings.interval_ns, bridge_ns, true),
             sub: Stream::new(settings.sub, settings.interval_ns, bridge_ns, false),
-            ins: VecDeque::with_capacity(INS_DEPTH),
+            ins: VecDeque::with_capacity(64),
             last: None,
             previous_ns: None,
             ended: false,
