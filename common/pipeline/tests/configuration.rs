@@ -435,17 +435,17 @@ fn the_fixed_model_and_its_figures_belong_together() {
 #[test]
 fn rules_of_several_keys_are_all_reported() {
     let text = MINIMAL.replace("rate_hz = 100", "rate_hz = 10\nsilence_s = 0.1")
-        + "[area.estimator]\nfilter_hz = 50\n[area.identifier]\nwindow_s = 8\n"
+        + "[area.estimator]\nfilter_hz = 50\n[area.identifier]\nminimum_s = 10\nwindow_s = 8\n"
         + MINIMAL.split_once("[[area]]").map_or("", |(_, tail)| tail).replace("\nname", "[[area]]\nname").as_str();
     let told = read(&text).expect_err("four faults");
     let lines: Vec<&str> = told.lines().collect();
     assert_eq!(
         lines,
         [
-            "ship.toml:15: area[1].name = \"radar\": area[0] has the same name",
+            "ship.toml:16: area[1].name = \"radar\": area[0] has the same name",
             "ship.toml:2: silence_s = 0.1: must be at least two samples, 0.2 s at 10 Hz",
             "ship.toml:11: area[0].estimator.filter_hz = 50: must not be above rate_hz = 10",
-            "ship.toml:12: area[0].identifier.minimum_s: 10 s is longer than window_s = 8",
+            "ship.toml:13: area[0].identifier.minimum_s = 10: 10 s is longer than window_s = 8",
         ]
     );
 }

@@ -1,8 +1,8 @@
 //! Time synchronisation of one area: the sub unit's stream onto the main unit's instants, by data time alone.
 //!
-//! Each unit's stream is first cleaned ([`stream`]): repeated samples are dropped, a few late ones put back into their place, short
+//! Each unit's stream is first cleaned (`stream`): repeated samples are dropped, a few late ones put back into their place, short
 //! holes bridged, and the increments composed into an attitude. The sub unit's ATTITUDE is then interpolated at the main
-//! unit's instants ([`interpolation`]), which preserves the increments whatever the stamps do. The result depends on the contents of the
+//! unit's instants (`interpolation`), which preserves the increments whatever the stamps do. The result depends on the contents of the
 //! two streams only, not on when they arrive; the one exception, silence, is decided by main data time and travels with the pair.
 //!
 //! Source: the time base of paper 002's reworking; four points on SO(3).
