@@ -3,7 +3,7 @@
 //! Source: paper 000 eq 3 and paper 001 eq 28, with the driving density that follows from the stationary variance:
 //! `x'' + 2 mu x' + b^2 x = w`, density of w `Q = 4 mu b^2 sigma^2`, for any damping (`mu < b` oscillates, `mu = b` is critical).
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, SMatrix, Vector2};
 
 /// The model of one axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +78,24 @@ impl Flexure {
         let p = self.stationary();
         let f = self.transition(t);
         p - f * p * f.transpose()
+    }
+
+    /// Writes transition and noise over the time `t` into those of a larger state with the angle at `x` and the rate at `v`.
+    pub fn place<const N: usize>(
+        &self,
+        t: f64,
+        x: usize,
+        v: usize,
+        transition: &mut SMatrix<f64, N, N>,
+        noise: &mut SMatrix<f64, N, N>,
+    ) {
+        let (f, n) = (self.transition(t), self.noise(t));
+        for (i, row) in [x, v].into_iter().enumerate() {
+            for (j, column) in [x, v].into_iter().enumerate() {
+                transition[(row, column)] = f[(i, j)];
+                noise[(row, column)] = n[(i, j)];
+            }
+        }
     }
 
     /// Autocovariance at the lag `tau >= 0`: paper 000 eq 17 with the factor the right way up, `R(0) = sigma^2`.

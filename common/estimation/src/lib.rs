@@ -5,6 +5,7 @@
 
 pub mod align;
 pub mod estimator;
+pub mod evaluate;
 pub mod filter;
 pub mod flexure;
 pub mod identify;

@@ -37,6 +37,14 @@ pub struct Solution {
     pub registered: [f64; 4],
     /// Standard deviation of its error, rad, in m.
     pub registered_sigma: [f64; 3],
+    /// By how much the sub unit's stamps are late, s.
+    pub delay: f64,
+    /// Standard deviation of the error of `delay`, s; 0 where no delay is estimated.
+    pub delay_sigma: f64,
+    /// By how much the delay grows in a second.
+    pub skew: f64,
+    /// Standard deviation of the error of `skew`; 0 where it is not estimated.
+    pub skew_sigma: f64,
     /// Half width of the published 95 % range of each component of `q`'s error, rad.
     pub range: [f64; 3],
     /// `C_s^n`; all zeros where the main unit's attitude is not known.
@@ -53,7 +61,7 @@ pub struct Solution {
     pub reserved: u32,
 }
 
-message!(Solution, "deckflex/Solution/1");
+message!(Solution, "deckflex/Solution/2");
 
 impl Solution {
     /// Whether the deformation may be used.

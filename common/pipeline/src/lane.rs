@@ -1,9 +1,15 @@
 //! The pure steps of one area's lane, as the configuration wants them; the processes and the offline loop build the same.
 
-use crate::configuration::{Area, Configuration, EstimatorMethod, Gyro, IdentifierMethod};
-use estimation::estimator::{self, So3Estimator};
+use crate::configuration::{
+    Accel, Area, Configuration, FilterMethod, Gyro, IdentifierMethod, MatchingMethod, RangeMethod, RegistrationMethod,
+};
+use estimation::align::Registrar;
+use estimation::estimator::{self, MakeRegister, Matched, MatchedSettings, So3Estimator};
+use estimation::evaluate::{Deviations, Evaluate};
+use estimation::filter::Filter;
 use estimation::identify::{self, Fixed, Rvm};
-use estimation::matching::so3;
+use estimation::matching::rate::{self, RateMatching};
+use estimation::matching::{self, Model, so3};
 use estimation::synchronise::{self, Synchroniser, Unit};
 use estimation::{Estimator, Identifier};
 use frames::unit::nanoseconds;
@@ -22,28 +28,71 @@ pub fn synchroniser(configuration: &Configuration, area: usize) -> Synchroniser 
 
 /// The estimator of an area.
 pub fn estimator(configuration: &Configuration, area: usize) -> Box<dyn Estimator> {
+    let told = &configuration.areas[area].estimator;
+    match told.matching {
+        MatchingMethod::So3 => Box::new(So3Estimator::new(settings(configuration, area))),
+        MatchingMethod::Rate => matched::<RateMatching, { rate::STATES }, 3>(
+            configuration,
+            area,
+            rate::Options { static_walk: told.static_walk * told.static_walk },
+        ),
+    }
+}
+
+/// An estimator by any matching model.
+fn matched<M: Model<N, K> + 'static, const N: usize, const K: usize>(
+    configuration: &Configuration,
+    area: usize,
+    options: M::Options,
+) -> Box<dyn Estimator> {
+    let settings = settings(configuration, area);
+    let area = &configuration.areas[area];
+    let (main, sub) = (configuration.main.accel, area.accel);
+    let both = |figure: fn(&Accel) -> f64| main.as_ref().map_or(0.0, figure).hypot(sub.as_ref().map_or(0.0, figure));
+    let registration: Option<MakeRegister> = match area.estimator.registration {
+        RegistrationMethod::Motion => Some(|told| Box::new(Registrar::new(told.grade.scale_variance()))),
+        RegistrationMethod::Installation => None,
+    };
+    let filter = match area.estimator.filter {
+        FilterMethod::Kalman => Filter::Kalman,
+    };
+    let evaluation: Box<dyn Evaluate> = match area.estimator.range {
+        RangeMethod::Normal => Box::new(Deviations(1.96)),
+        RangeMethod::Naive => Box::new(Deviations(3.0)),
+    };
+    Box::new(Matched::<M, N, K>::new(
+        MatchedSettings {
+            area: settings,
+            accel: matching::Accel { vrw: both(|accel| accel.vrw), bias: both(|accel| accel.bias) },
+            lever_arm: area.lever_arm,
+            filter,
+            registration,
+            options,
+        },
+        evaluation,
+    ))
+}
+
+fn settings(configuration: &Configuration, area: usize) -> estimator::Settings {
     let index = area as u32;
     let area = &configuration.areas[area];
-    let flexure = match area.identifier.method {
-        IdentifierMethod::Fixed(flexure) => Some(flexure),
-        IdentifierMethod::Rvm => None,
-    };
-    match area.estimator.method {
-        EstimatorMethod::So3 => Box::new(So3Estimator::new(estimator::Settings {
-            area: index,
-            grade: so3::Grade {
-                main: figures(&configuration.main.gyro),
-                sub: figures(&area.gyro),
-                static_noise: area.estimator.static_rate_noise,
-            },
-            interval_s: 1.0 / configuration.rate_hz,
-            filter_hz: area.estimator.filter_hz,
-            registration_s: area.estimator.registration_s,
-            installation: area
-                .installation
-                .map(|told| estimator::Installation { rotation: told.rotation, sigma: told.sigma }),
-            flexure,
-        })),
+    estimator::Settings {
+        area: index,
+        grade: so3::Grade {
+            main: figures(&configuration.main.gyro),
+            sub: figures(&area.gyro),
+            static_noise: area.estimator.static_rate_noise,
+        },
+        interval_s: 1.0 / configuration.rate_hz,
+        filter_hz: area.estimator.filter_hz,
+        registration_s: area.estimator.registration_s,
+        installation: area
+            .installation
+            .map(|told| estimator::Installation { rotation: told.rotation, sigma: told.sigma }),
+        flexure: match area.identifier.method {
+            IdentifierMethod::Fixed(flexure) => Some(flexure),
+            IdentifierMethod::Rvm => None,
+        },
     }
 }
 

@@ -62,7 +62,10 @@ impl<W: Write> SolutionFile<W> {
             true => solution.q.iter().try_for_each(|x| write!(out, ",{x}"))?,
             false => out.write_all(b",,,,")?,
         }
-        out.write_all(b",,")?; // no delay is estimated by this method
+        match solution.delay_sigma > 0.0 {
+            true => write!(out, ",{},{}", solution.delay / 1e-3, solution.delay_sigma / 1e-3)?,
+            false => out.write_all(b",,")?,
+        }
         if solution.deck == [0.0; 4] {
             out.write_all(b",,,")?;
         } else {

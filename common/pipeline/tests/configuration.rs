@@ -114,7 +114,7 @@ gyro = { arw_deg_per_sqrt_h = 0.001, bias_deg_per_h = 0.01, stamp_jitter_us = 50
 mounting = { rotation_vector_deg = [0, 0, 90] }
 installation = { rotation_vector_deg = [1, 2, 3], sigma_deg = 0.5 }
 [area.estimator]
-method = "so3"
+matching = "so3"
 filter_hz = 20
 registration_s = 40
 static_rate_noise_arcsec2_per_s3 = 2
@@ -315,8 +315,8 @@ fn a_wrong_type_is_told_with_the_right_one() {
         "ship.toml:10: area[0].identifier.method = \"svr\": must be one of \"rvm\", \"fixed\""
     );
     assert_eq!(
-        message_with("[area.estimator]\nmethod = \"ekf\""),
-        "ship.toml:10: area[0].estimator.method = \"ekf\": must be one of \"so3\""
+        message_with("[area.estimator]\nmatching = \"ekf\""),
+        "ship.toml:10: area[0].estimator.matching = \"ekf\": must be one of \"so3\", \"rate\""
     );
     assert_eq!(
         message_with("[simulation]\nvelocity_follows_heading = 1"),

@@ -1,8 +1,14 @@
-//! Matching models: what the difference of two units' attitudes says about the deformation.
+//! Matching models: what the difference of two units' attitudes, rates or velocities says about the deformation.
 
+#[cfg(test)]
+mod conformance;
+pub mod rate;
 pub mod so3;
 
-use nalgebra::{SMatrix, SVector};
+use crate::flexure::Flexure;
+use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
+use nalgebra::{Matrix3, SMatrix, SVector};
+use so3::Grade;
 
 /// Transition and noise of an error state over one filter interval.
 #[derive(Clone, Copy, Debug)]
@@ -25,11 +31,105 @@ pub struct Observation<const N: usize, const K: usize> {
 }
 
 /// A nominal state with an error state of `N` components and measurements of `K`.
-pub trait Matching<const N: usize, const K: usize> {
+pub trait Matching<const N: usize, const K: usize>: Clone {
     /// Moves the nominal state on over everything taken in since the last call, and says what the error state did meanwhile.
     fn propagate(&mut self) -> Prediction<N>;
-    /// Compares the nominal state with the units' attitudes.
+    /// Compares the nominal state with the units' data.
     fn observe(&self) -> Observation<N, K>;
     /// Moves an estimated error from the error state into the nominal state.
     fn inject(&mut self, error: &SVector<f64, N>);
+    /// The residual as it would be after an error had been moved into the nominal state, for filters that ask away from it.
+    fn residual_after(&self, error: &SVector<f64, N>) -> SVector<f64, K> {
+        let mut other = self.clone();
+        other.inject(error);
+        other.observe().residual
+    }
+}
+
+/// What the two units felt since the pair before; the attitudes are those since the filter's start.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion {
+    /// Since the filter's start, s.
+    pub time_s: f64,
+    /// The interval, s.
+    pub interval_s: f64,
+    /// The main unit's axes from where they stood at the filter's start, by its gyros.
+    pub a_m: Rot<MainStart, Main>,
+    /// The same of the sub unit.
+    pub a_s: Rot<SubStart, Sub>,
+    /// Angle increment of the main unit, rad.
+    pub dtheta_m: Vec3<Main>,
+    /// Angle increment of the sub unit, rad.
+    pub dtheta_s: Vec3<Sub>,
+    /// Velocity increment of the main unit, m/s.
+    pub dvel_m: Vec3<Main>,
+    /// Velocity increment of the sub unit, m/s.
+    pub dvel_s: Vec3<Sub>,
+    /// Standard deviation of further angle errors in the interval, rad.
+    pub disturbance: f64,
+}
+
+/// What a model starts from.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    /// Figures of the gyros.
+    pub grade: Grade,
+    /// Figures of the accelerometers.
+    pub accel: Accel,
+    /// From the main to the sub unit, m.
+    pub lever_arm: Vec3<Main>,
+    /// The flexure model until a better one is adopted.
+    pub flexure: [Flexure; 3],
+    /// The registered or surveyed installation `C_s^m`.
+    pub rotation: Rot<Main, Sub>,
+    /// Covariance of its error, rad^2, in m.
+    pub covariance: Matrix3<f64>,
+}
+
+/// Figures of the accelerometers of both units, one standard deviation each.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Accel {
+    /// Relative velocity random walk, m/s/sqrt(s).
+    pub vrw: f64,
+    /// Relative bias, m/s^2.
+    pub bias: f64,
+}
+
+/// What a model has to say at an instant; `rows` give the error of what stands beside them from the error state.
+#[derive(Clone, Copy, Debug)]
+pub struct View<const N: usize> {
+    /// Total deformation.
+    pub deformation: Rot<Main, Sub>,
+    /// Of the error of the total, in m.
+    pub rows: SMatrix<f64, 3, N>,
+    /// Covariance that has entered the total since the last propagation, rad^2.
+    pub noise: Matrix3<f64>,
+    /// Static part.
+    pub static_part: Rot<Main, Sub>,
+    /// Of the error of the static part.
+    pub static_rows: SMatrix<f64, 3, N>,
+    /// Rate of the flexure, rad/s.
+    pub rate: Vec3<Main>,
+    /// Of the error of that rate.
+    pub rate_rows: SMatrix<f64, 3, N>,
+    /// Relative gyro bias, main minus sub unit, rad/s.
+    pub drift: Vec3<Main>,
+    /// By how much the sub unit's stamps are late, s, with the place of its state; `None` where it is not estimated.
+    pub delay: Option<(f64, usize)>,
+    /// By how much the delay grows in a second, with the place of its state.
+    pub skew: Option<(f64, usize)>,
+}
+
+/// A matching model that an estimator can run.
+pub trait Model<const N: usize, const K: usize>: Matching<N, K> + Send {
+    /// What distinguishes one use of the model from another.
+    type Options: Clone + Send;
+    /// The state at the filter's start, with its covariance.
+    fn begin(options: &Self::Options, start: &Start) -> (Self, SMatrix<f64, N, N>);
+    /// Takes in what both units felt since the pair before.
+    fn advance(&mut self, motion: &Motion);
+    /// Replaces the flexure model from now on.
+    fn set_flexure(&mut self, flexure: [Flexure; 3]);
+    /// The state at the last pair taken in.
+    fn view(&self) -> View<N>;
 }

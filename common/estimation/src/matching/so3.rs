@@ -84,7 +84,7 @@ pub struct Gyro {
 }
 
 /// What the model takes as given.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Grade {
     /// Main unit.
     pub main: Gyro,
@@ -373,16 +373,10 @@ impl Matching<STATES, 3> for So3 {
             noise[(r, r)] = q * h;
 
             let (x, v) = (place::FLEXURE + axis, place::FLEXURE_RATE + axis);
-            let (f, n) = (self.flexure[axis].transition(h), self.flexure[axis].noise(h));
-            for (i, row) in [x, v].into_iter().enumerate() {
-                for (j, column) in [x, v].into_iter().enumerate() {
-                    transition[(row, column)] = f[(i, j)];
-                    noise[(row, column)] = n[(i, j)];
-                }
-            }
+            self.flexure[axis].place(h, x, v, &mut transition, &mut noise);
             let (theta, rate) = (self.theta[axis], self.theta_rate[axis]);
-            self.theta[axis] = f[(0, 0)] * theta + f[(0, 1)] * rate;
-            self.theta_rate[axis] = f[(1, 0)] * theta + f[(1, 1)] * rate;
+            self.theta[axis] = transition[(x, x)] * theta + transition[(x, v)] * rate;
+            self.theta_rate[axis] = transition[(v, x)] * theta + transition[(v, v)] * rate;
         }
         let kept = (-h / WANDER_S).exp();
         self.wander = self.wander * kept;

@@ -15,7 +15,10 @@ pub use area::{Area, Installation, MainUnit};
 pub use error::ConfigurationError;
 pub use instrument::{Accel, Gyro, Source};
 pub use simulation::{AreaSimulation, Ins, Simulation, Sway, Wire};
-pub use stages::{EstimatorMethod, EstimatorSettings, IdentifierMethod, IdentifierSettings};
+pub use stages::{
+    EstimatorSettings, FilterMethod, IdentifierMethod, IdentifierSettings, MatchingMethod, RangeMethod,
+    RegistrationMethod,
+};
 
 use document::Document;
 use serde::{Deserialize, Deserializer};

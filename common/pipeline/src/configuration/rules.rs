@@ -1,7 +1,7 @@
 //! Rules that more than one key takes part in.
 
 use super::document::Document;
-use super::{Area, Configuration, ConfigurationError, Source};
+use super::{Area, Configuration, ConfigurationError, RegistrationMethod, Source};
 use std::path::Path;
 
 /// Makes the paths of the recordings absolute and checks the whole; all faults are reported.
@@ -16,6 +16,7 @@ pub(super) fn apply(configuration: &mut Configuration, document: &Document) -> R
     sources(configuration, document, &mut faults);
     names(&configuration.areas, document, &mut faults);
     times(configuration, document, &mut faults);
+    methods(&configuration.areas, document, &mut faults);
     match faults.len() {
         0 => Ok(()),
         1 => Err(faults.remove(0)),
@@ -83,4 +84,43 @@ fn times(configuration: &Configuration, document: &Document, faults: &mut Vec<Co
             faults.push(document.fault(&format!("area[{i}].identifier.minimum_s"), &message));
         }
     }
+}
+
+/// Every part of the fast stage must have a meaning with its matching.
+fn methods(areas: &[Area], document: &Document, faults: &mut Vec<ConfigurationError>) {
+    for (i, area) in areas.iter().enumerate() {
+        let told = &area.estimator;
+        let matching = told.matching;
+        let mut part = |key: &str, meant: bool, others: String| {
+            if !meant {
+                let message =
+                    format!("has no meaning with matching = \"{}\", which goes with {others}", name(&matching));
+                faults.push(document.fault(&format!("area[{i}].estimator.{key}"), &message));
+            }
+        };
+        part("registration", matching.registrations().contains(&told.registration), names_of(matching.registrations()));
+        part("filter", matching.filters().contains(&told.filter), names_of(matching.filters()));
+        part("range", matching.ranges().contains(&told.range), names_of(matching.ranges()));
+        if told.registration == RegistrationMethod::Installation && area.installation.is_none() {
+            let message = "\"installation\" needs the table `installation`";
+            faults.push(document.fault(&format!("area[{i}].estimator.registration"), message));
+        }
+    }
+}
+
+/// The name of a method, as in the configuration.
+fn name<T: std::fmt::Debug>(method: &T) -> String {
+    let variant = format!("{method:?}");
+    let mut name = String::new();
+    for (i, letter) in variant.chars().enumerate() {
+        if letter.is_ascii_uppercase() && i > 0 {
+            name.push('_');
+        }
+        name.push(letter.to_ascii_lowercase());
+    }
+    name
+}
+
+fn names_of<T: std::fmt::Debug>(methods: &[T]) -> String {
+    methods.iter().map(|method| format!("\"{}\"", name(method))).collect::<Vec<_>>().join(", ")
 }

@@ -6,21 +6,85 @@ use frames::unit;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 
-/// The methods of the fast stage.
+/// How the fast stage first finds the installation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub enum EstimatorMethod {
-    /// Attitude matching on SO(3).
+pub enum RegistrationMethod {
+    /// From the motion, by windows of angle increments.
+    #[default]
+    Motion,
+    /// The configured installation is taken as it is.
+    Installation,
+}
+
+/// What the fast stage compares.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MatchingMethod {
+    /// Attitudes on SO(3).
     #[default]
     So3,
+    /// Angular rates, 12 states.
+    Rate,
+}
+
+/// How the fast stage corrects its state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FilterMethod {
+    /// Linear update.
+    #[default]
+    Kalman,
+}
+
+/// What the published range is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RangeMethod {
+    /// 1.96 standard deviations.
+    #[default]
+    Normal,
+    /// Three standard deviations of the filter, as papers do.
+    Naive,
+}
+
+impl MatchingMethod {
+    /// The registrations that this matching can start from.
+    pub fn registrations(self) -> &'static [RegistrationMethod] {
+        match self {
+            Self::So3 => &[RegistrationMethod::Motion],
+            Self::Rate => &[RegistrationMethod::Motion, RegistrationMethod::Installation],
+        }
+    }
+
+    /// The filters that have a meaning with this matching.
+    pub fn filters(self) -> &'static [FilterMethod] {
+        match self {
+            Self::So3 | Self::Rate => &[FilterMethod::Kalman],
+        }
+    }
+
+    /// The ranges that have a meaning with this matching.
+    pub fn ranges(self) -> &'static [RangeMethod] {
+        match self {
+            Self::So3 => &[RangeMethod::Normal],
+            Self::Rate => &[RangeMethod::Normal, RangeMethod::Naive],
+        }
+    }
 }
 
 /// The fast stage.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct EstimatorSettings {
-    /// Which method.
-    pub method: EstimatorMethod,
+    /// How the installation is first found.
+    pub registration: RegistrationMethod,
+    /// What is compared.
+    pub matching: MatchingMethod,
+    /// How the state is corrected.
+    pub filter: FilterMethod,
+    /// What the published range is made of.
+    pub range: RangeMethod,
     /// How often the filter takes a measurement, Hz.
     #[serde(deserialize_with = "quantity::filter_hz")]
     pub filter_hz: f64,
@@ -33,15 +97,22 @@ pub struct EstimatorSettings {
         deserialize_with = "quantity::static_rate_noise_arcsec2_per_s3"
     )]
     pub static_rate_noise: f64,
+    /// Random walk of the static part, for models without a rate of it, rad/sqrt(s).
+    #[serde(rename = "static_walk_arcsec_per_sqrt_h", deserialize_with = "quantity::static_walk_arcsec_per_sqrt_h")]
+    pub static_walk: f64,
 }
 
 impl Default for EstimatorSettings {
     fn default() -> Self {
         Self {
-            method: EstimatorMethod::So3,
+            registration: RegistrationMethod::Motion,
+            matching: MatchingMethod::So3,
+            filter: FilterMethod::Kalman,
+            range: RangeMethod::Normal,
             filter_hz: 10.0,
             registration_s: 20.0,
             static_rate_noise: 1e-4 * unit::ARCSEC * unit::ARCSEC,
+            static_walk: 0.0,
         }
     }
 }

@@ -1,49 +1,16 @@
 //! The fast stage: registration by motion, then the filter of [`crate::matching::so3`], with an output at every pair.
 
+use super::adoption::Adoption;
+use super::{Settings, deck, row_major};
 use crate::Estimator;
-use crate::align::{Registrar, Registration};
-use crate::filter::{Kalman, Update, symmetrise};
+use crate::align::{Register, Registrar, Registration};
+use crate::filter::{kalman, symmetrise};
 use crate::flexure::Flexure;
 use crate::matching::Matching;
-use crate::matching::so3::{Covariance, Grade, Increment, STATES, So3, place};
-use frames::{Main, MainStart, Nav, Rot, Sub, SubStart, Vec3, unit};
+use crate::matching::so3::{Covariance, Increment, STATES, So3, place};
+use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
 use messages::{Flags, FlexureParams, ImuPair, Solution};
 use nalgebra::{Matrix3, SMatrix, Vector3};
-use std::collections::VecDeque;
-
-/// A surveyed installation to fall back to.
-#[derive(Clone, Copy, Debug)]
-pub struct Installation {
-    /// `C_s^m`.
-    pub rotation: Rot<Main, Sub>,
-    /// Standard deviation of its error about each axis, rad.
-    pub sigma: f64,
-}
-
-/// Settings of the estimator of one area.
-#[derive(Clone, Copy, Debug)]
-pub struct Settings {
-    /// Index of the area.
-    pub area: u32,
-    /// Figures of both units, and how restless the static part is.
-    pub grade: Grade,
-    /// Nominal sampling interval, s.
-    pub interval_s: f64,
-    /// Rate of the filter, Hz; the output comes at every pair all the same.
-    pub filter_hz: f64,
-    /// How long to wait for the motion to show the installation before the surveyed one is taken, s.
-    pub registration_s: f64,
-    /// The surveyed installation, if there is one.
-    pub installation: Option<Installation>,
-    /// A flexure model known beforehand; otherwise a broad guess is made at registration.
-    pub flexure: Option<[Flexure; 3]>,
-}
-
-impl Settings {
-    fn registrar(&self) -> Registrar {
-        Registrar::new(self.grade.scale_variance())
-    }
-}
 
 /// While the filter runs, the registration by motion is worked out so often, ns.
 const REGISTER_AGAIN_NS: i64 = 10_000_000_000;
@@ -69,8 +36,6 @@ const LOST: f64 = 1.0;
 const LARGEST_FLEXURE: f64 = 0.05;
 /// Beyond this standard deviation (rad) the constant is not worth keeping.
 const BROKEN: f64 = 0.1;
-/// Parameter sets that wait for their time.
-const WAITING: usize = 8;
 
 /// The estimator of one area.
 #[derive(Clone, Debug)]
@@ -81,11 +46,7 @@ pub struct So3Estimator {
     registrar: Registrar,
     registered: Option<Registration>,
     registered_ns: i64,
-    /// Sets that wait for their time, in the order of it.
-    waiting: VecDeque<FlexureParams>,
-    /// The set in force.
-    params: Option<FlexureParams>,
-    last_ns: Option<i64>,
+    adoption: Adoption,
     /// Flags that the next solution carries.
     news: Flags,
 }
@@ -116,29 +77,28 @@ struct Good {
     a_m: Rot<MainStart, Main>,
 }
 
+fn registrar(settings: &Settings) -> Registrar {
+    Registrar::new(settings.grade.scale_variance())
+}
+
 impl So3Estimator {
     /// An estimator that has seen nothing yet.
     pub fn new(settings: Settings) -> Self {
         Self {
             settings,
-            registrar: settings.registrar(),
+            registrar: registrar(&settings),
             registered: None,
             registered_ns: i64::MIN,
             phase: Phase::Registering { since_ns: None },
-            waiting: VecDeque::with_capacity(WAITING),
-            params: None,
-            last_ns: None,
+            adoption: Adoption::new(),
             news: Flags::empty(),
         }
     }
 
-    fn adopt(&mut self, time_ns: i64) {
-        while self.waiting.front().is_some_and(|params| params.effective_from_ns <= time_ns) {
-            self.params = self.waiting.pop_front();
-        }
-        if let (Some(params), Phase::Running(running)) = (&self.params, &mut self.phase) {
+    fn adopt(&mut self) {
+        if let (Some(flexure), Phase::Running(running)) = (self.adoption.flexure(), &mut self.phase) {
             let least = self.settings.grade.least_flexure();
-            running.so3.set_flexure(model(params).map(|flexure| flexure.bounded(least, LARGEST_FLEXURE)));
+            running.so3.set_flexure(flexure.map(|axis| axis.bounded(least, LARGEST_FLEXURE)));
         }
     }
 
@@ -182,7 +142,7 @@ impl So3Estimator {
         };
         (self.registered, self.registered_ns) = (found, time_ns);
         self.phase = Phase::Running(Box::new(running));
-        self.adopt(time_ns);
+        self.adopt();
     }
 
     fn start(&self, from: Registration, flags: Flags) -> Running {
@@ -212,7 +172,7 @@ impl So3Estimator {
     fn publish(&self, pair: &ImuPair, running: Option<&Running>, flags: Flags) -> Solution {
         let mut solution = Solution {
             header: pair.header,
-            params_id: self.params.map_or(0, |params| params.id),
+            params_id: self.adoption.id(),
             epoch: pair.epoch,
             area: self.settings.area,
             flags,
@@ -254,50 +214,31 @@ impl So3Estimator {
         }
         solution.range = covariance.diagonal().map(|v| RANGE * v.sqrt()).into();
         solution.valid = u32::from(!coasting && covariance.diagonal().max() < LOST);
-        if pair.ins != [0.0; 4] {
-            let ship = Rot::<Nav, Main>::from_wxyz(pair.ins);
-            let c = ship.matrix();
-            let turned = (c * covariance * c.transpose()).diagonal();
-            solution.deck = (ship * deformation).quaternion();
-            solution.deck_sigma = std::array::from_fn(|i| (turned[i] + pair.ins_sigma[i].powi(2)).sqrt());
-        }
+        deck(&mut solution, pair, deformation, &covariance);
         solution
     }
 }
 
 impl Estimator for So3Estimator {
     fn offer(&mut self, params: FlexureParams) {
-        let known = |other: &FlexureParams| other.id == params.id;
-        if !model(&params).iter().all(Flexure::is_sound) {
-            return;
-        }
-        if self.params.as_ref().is_some_and(known) || self.waiting.iter().any(known) {
-            return;
-        }
-        if self.last_ns.is_some_and(|last_ns| last_ns >= params.effective_from_ns) {
+        if self.adoption.offer(params) {
             self.news |= Flags::LATE;
         }
-        if self.waiting.len() == WAITING {
-            self.waiting.pop_front();
-        }
-        let place = self.waiting.partition_point(|other| other.effective_from_ns <= params.effective_from_ns);
-        self.waiting.insert(place, params);
     }
 
     fn step(&mut self, pair: &ImuPair) -> Solution {
-        let time_ns = pair.header.time_ns;
-        self.adopt(time_ns);
-        self.last_ns = Some(time_ns);
+        self.adoption.advance(pair.header.time_ns);
+        self.adopt();
         self.register(pair);
         let mut flags = pair.flags;
-        if self.params.is_none() && self.settings.flexure.is_none() {
+        if self.adoption.id() == 0 && self.settings.flexure.is_none() {
             flags |= Flags::PRIOR;
         }
         if let Phase::Running(running) = &mut self.phase
             && running.step(pair, &self.settings).is_none()
         {
             self.phase = Phase::Registering { since_ns: None };
-            self.registrar = self.settings.registrar();
+            self.registrar = registrar(&self.settings);
             self.news |= Flags::RESET;
         }
         flags |= std::mem::take(&mut self.news);
@@ -340,7 +281,7 @@ impl Running {
                         self.start_epoch(a_m, a_s);
                     }
                     let seen = self.so3.observe();
-                    let error = Kalman.update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
+                    let error = kalman::update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
                     self.so3.inject(&error);
                 }
             }
@@ -383,13 +324,4 @@ impl Running {
 fn guess(residual_rate: &Vector3<f64>) -> [Flexure; 3] {
     let (mu, b, wider) = GUESS;
     std::array::from_fn(|axis| Flexure { mu, b, sigma: (wider * residual_rate[axis] / b).max(LEAST_GUESS) })
-}
-
-/// The flexure model of a parameter set.
-pub fn model(params: &FlexureParams) -> [Flexure; 3] {
-    std::array::from_fn(|i| Flexure { mu: params.mu[i], b: params.b[i], sigma: params.sigma[i] })
-}
-
-fn row_major(m: &Matrix3<f64>) -> [f64; 9] {
-    std::array::from_fn(|i| m[(i / 3, i % 3)])
 }

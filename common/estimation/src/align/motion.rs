@@ -8,6 +8,7 @@
 //! for as well, with `K` held to the size of the units' scale errors, and its nearest rotation is taken: with units as good as a
 //! ship's this is Davenport's solution, with coarse ones their scale errors drop out.
 
+use super::{Register, Registration};
 use frames::{Main, Rot, Sub, Vec3, unit};
 use messages::{Flags, ImuPair};
 use nalgebra::{Matrix3, Vector3};
@@ -18,39 +19,6 @@ const WINDOW_S: f64 = 0.1;
 const CORRELATION: f64 = 20.0;
 /// Least number of windows before a solution is tried.
 const LEAST_WINDOWS: f64 = 40.0;
-/// Least ratio of the second to the first singular value: below, the motion has one axis only.
-const LEAST_RATIO: f64 = 1e-3;
-/// Largest standard deviation of a registered axis.
-const LARGEST_SIGMA: f64 = 2.0 * unit::DEGREE;
-
-/// A registered installation.
-#[derive(Clone, Copy, Debug)]
-pub struct Registration {
-    /// `C_s^m`, averaged over the windows.
-    pub rotation: Rot<Main, Sub>,
-    /// Covariance of its error, rad^2, in m.
-    pub covariance: Matrix3<f64>,
-    /// Relative gyro bias, rad/s, in m.
-    pub bias: Vec3<Main>,
-    /// Its standard deviation per axis, rad/s.
-    pub bias_sigma: Vector3<f64>,
-    /// Standard deviation of the relative rate that the constant rotation leaves, per axis, rad/s.
-    pub residual_rate: Vector3<f64>,
-    /// Ratio of the second to the first singular value of the matching matrix.
-    pub ratio: f64,
-}
-
-impl Registration {
-    /// Whether the motion shows the installation on every axis.
-    pub fn is_observable(&self) -> bool {
-        self.ratio >= LEAST_RATIO && self.largest_sigma() <= LARGEST_SIGMA
-    }
-
-    /// The largest standard deviation of an axis, rad.
-    pub fn largest_sigma(&self) -> f64 {
-        self.covariance.diagonal().max().sqrt()
-    }
-}
 
 /// Collects windows of both units' angle increments.
 #[derive(Clone, Debug)]
@@ -91,8 +59,19 @@ impl Registrar {
         }
     }
 
-    /// Takes the increments of a pair.
-    pub fn add(&mut self, pair: &ImuPair) {
+    fn window(&mut self, a: Vector3<f64>, b: Vector3<f64>, length_s: f64) {
+        self.windows += 1.0;
+        self.length_s += length_s;
+        self.sum_a += a;
+        self.sum_b += b;
+        self.sum_aa += a * a.transpose();
+        self.sum_ab += a * b.transpose();
+        self.sum_bb += b * b.transpose();
+    }
+}
+
+impl Register for Registrar {
+    fn add(&mut self, pair: &ImuPair) {
         if pair.flags.intersects(Flags::GAP | Flags::NEW_EPOCH | Flags::SATURATED) {
             self.filling = Filling::default();
             return;
@@ -108,18 +87,7 @@ impl Registrar {
         }
     }
 
-    fn window(&mut self, a: Vector3<f64>, b: Vector3<f64>, length_s: f64) {
-        self.windows += 1.0;
-        self.length_s += length_s;
-        self.sum_a += a;
-        self.sum_b += b;
-        self.sum_aa += a * a.transpose();
-        self.sum_ab += a * b.transpose();
-        self.sum_bb += b * b.transpose();
-    }
-
-    /// The registration so far; `None` with too few windows or without motion.
-    pub fn solve(&self) -> Option<Registration> {
+    fn solve(&self) -> Option<Registration> {
         let n = self.windows;
         if n < LEAST_WINDOWS {
             return None;

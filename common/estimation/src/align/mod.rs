@@ -1,0 +1,50 @@
+//! Coarse registration: the installation of a sub unit, at any angle, from the first seconds of data.
+
+mod motion;
+
+pub use motion::Registrar;
+
+use frames::{Main, Rot, Sub, Vec3, unit};
+use messages::ImuPair;
+use nalgebra::{Matrix3, Vector3};
+
+/// Collects pairs until they show the installation.
+pub trait Register: Send {
+    /// Takes a pair.
+    fn add(&mut self, pair: &ImuPair);
+    /// The registration so far; `None` with too little data or motion.
+    fn solve(&self) -> Option<Registration>;
+}
+
+/// Largest standard deviation of a registered axis.
+const LARGEST_SIGMA: f64 = 2.0 * unit::DEGREE;
+/// Least ratio of the second to the first singular value: below, the motion has one axis only.
+const LEAST_RATIO: f64 = 1e-3;
+/// A registered installation.
+#[derive(Clone, Copy, Debug)]
+pub struct Registration {
+    /// `C_s^m`, averaged over the windows.
+    pub rotation: Rot<Main, Sub>,
+    /// Covariance of its error, rad^2, in m.
+    pub covariance: Matrix3<f64>,
+    /// Relative gyro bias, rad/s, in m.
+    pub bias: Vec3<Main>,
+    /// Its standard deviation per axis, rad/s.
+    pub bias_sigma: Vector3<f64>,
+    /// Standard deviation of the relative rate that the constant rotation leaves, per axis, rad/s.
+    pub residual_rate: Vector3<f64>,
+    /// Ratio of the second to the first singular value of the matching matrix.
+    pub ratio: f64,
+}
+
+impl Registration {
+    /// Whether the motion shows the installation on every axis.
+    pub fn is_observable(&self) -> bool {
+        self.ratio >= LEAST_RATIO && self.largest_sigma() <= LARGEST_SIGMA
+    }
+
+    /// The largest standard deviation of an axis, rad.
+    pub fn largest_sigma(&self) -> f64 {
+        self.covariance.diagonal().max().sqrt()
+    }
+}

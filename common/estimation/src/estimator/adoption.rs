@@ -1,0 +1,59 @@
+//! Parameter sets that wait for the data time from which they are in force.
+
+use super::model;
+use crate::flexure::Flexure;
+use messages::FlexureParams;
+use std::collections::VecDeque;
+
+/// Parameter sets that wait for their time.
+const WAITING: usize = 8;
+
+/// The set in force and those that wait.
+#[derive(Clone, Debug)]
+pub(super) struct Adoption {
+    /// In the order of their time.
+    waiting: VecDeque<FlexureParams>,
+    params: Option<FlexureParams>,
+    last_ns: Option<i64>,
+}
+
+impl Adoption {
+    pub(super) fn new() -> Self {
+        Self { waiting: VecDeque::with_capacity(WAITING), params: None, last_ns: None }
+    }
+
+    /// Takes an offer, unless it is known or unsound; `true` if it came after its time.
+    pub(super) fn offer(&mut self, params: FlexureParams) -> bool {
+        let known = |other: &FlexureParams| other.id == params.id;
+        if !model(&params).iter().all(Flexure::is_sound) {
+            return false;
+        }
+        if self.params.as_ref().is_some_and(known) || self.waiting.iter().any(known) {
+            return false;
+        }
+        if self.waiting.len() == WAITING {
+            self.waiting.pop_front();
+        }
+        let place = self.waiting.partition_point(|other| other.effective_from_ns <= params.effective_from_ns);
+        self.waiting.insert(place, params);
+        self.last_ns.is_some_and(|last_ns| last_ns >= params.effective_from_ns)
+    }
+
+    /// Lets the time of a pair come.
+    pub(super) fn advance(&mut self, time_ns: i64) {
+        self.last_ns = Some(time_ns);
+        while self.waiting.front().is_some_and(|params| params.effective_from_ns <= time_ns) {
+            self.params = self.waiting.pop_front();
+        }
+    }
+
+    /// Identity of the set in force, 0 for none.
+    pub(super) fn id(&self) -> u64 {
+        self.params.map_or(0, |params| params.id)
+    }
+
+    /// The flexure model in force.
+    pub(super) fn flexure(&self) -> Option<[Flexure; 3]> {
+        self.params.as_ref().map(model)
+    }
+}

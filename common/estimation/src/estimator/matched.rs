@@ -1,0 +1,254 @@
+//! Any matching model with any filter: registration, propagation at each pair, an update at the filter's rate, an output at each pair.
+
+use super::adoption::Adoption;
+use super::{Settings, deck, row_major};
+use crate::Estimator;
+use crate::align::{Register, Registration};
+use crate::evaluate::{Evaluate, Evidence};
+use crate::filter::{Filter, symmetrise};
+use crate::flexure::Flexure;
+use crate::matching::{Accel, Model, Motion, Prediction, Start, View};
+use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
+use messages::{Flags, FlexureParams, ImuPair, Solution};
+use nalgebra::{Matrix3, SMatrix};
+
+/// The flexure that is assumed while none is told or identified.
+const BROAD: Flexure = Flexure { mu: 0.3, b: 0.6, sigma: 10.0 * unit::ARCSEC };
+/// A covariance beyond this (1 rad^2) says nothing of a rotation any more.
+const LOST: f64 = 1.0;
+/// Standard deviation of the total above which the solution is not offered for use, rad.
+const USABLE: f64 = 0.1;
+
+/// Makes a registration that has seen nothing yet.
+pub type MakeRegister = fn(&Settings) -> Box<dyn Register>;
+
+/// Settings of [`Matched`].
+pub struct MatchedSettings<O> {
+    /// What every estimator of an area is told.
+    pub area: Settings,
+    /// Accelerometers of both units.
+    pub accel: Accel,
+    /// From the main to the sub unit, m.
+    pub lever_arm: Vec3<Main>,
+    /// The filter.
+    pub filter: Filter,
+    /// How the installation is first found; `None` starts from the surveyed installation with the first pair.
+    pub registration: Option<MakeRegister>,
+    /// Which use of the model.
+    pub options: O,
+}
+
+/// The estimator of one area by a model `M` of `N` error states and `K` measurements.
+pub struct Matched<M: Model<N, K>, const N: usize, const K: usize> {
+    settings: MatchedSettings<M::Options>,
+    evaluation: Box<dyn Evaluate>,
+    registration: Option<Box<dyn Register>>,
+    since_ns: Option<i64>,
+    adoption: Adoption,
+    running: Option<Running<M, N>>,
+    news: Flags,
+}
+
+struct Running<M, const N: usize> {
+    model: M,
+    p: SMatrix<f64, N, N>,
+    epoch: u64,
+    begin_ns: i64,
+    last_ns: i64,
+    updated_ns: i64,
+    start_m: Rot<MainStart, Main>,
+    start_s: Rot<SubStart, Sub>,
+    w_im_m: Vec3<Main>,
+}
+
+impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
+    /// An estimator that has seen nothing yet.
+    pub fn new(settings: MatchedSettings<M::Options>, evaluation: Box<dyn Evaluate>) -> Self {
+        Self {
+            registration: settings.registration.map(|make| make(&settings.area)),
+            settings,
+            evaluation,
+            since_ns: None,
+            adoption: Adoption::new(),
+            running: None,
+            news: Flags::empty(),
+        }
+    }
+
+    /// The filter starts with a pair, once registration has taken its time.
+    fn register(&mut self, pair: &ImuPair) {
+        let time_ns = pair.header.time_ns;
+        let area = &self.settings.area;
+        let (rotation, covariance) = match &mut self.registration {
+            None => {
+                let Some(told) = area.installation else { return };
+                (told.rotation, Matrix3::identity() * told.sigma.powi(2))
+            }
+            Some(registration) => {
+                registration.add(pair);
+                let waited_s = unit::seconds(time_ns - *self.since_ns.get_or_insert(time_ns));
+                if waited_s < area.registration_s - 0.5 * area.interval_s {
+                    return;
+                }
+                let Some(Registration { rotation, covariance, .. }) = registration.solve() else {
+                    self.news |= Flags::UNOBSERVABLE;
+                    return;
+                };
+                (rotation, covariance)
+            }
+        };
+        if pair.flags.contains(Flags::GAP) {
+            return;
+        }
+        let start = Start {
+            grade: area.grade,
+            accel: self.settings.accel,
+            lever_arm: self.settings.lever_arm,
+            flexure: self.adoption.flexure().or(area.flexure).unwrap_or([BROAD; 3]),
+            rotation,
+            covariance,
+        };
+        let (model, p) = M::begin(&self.settings.options, &start);
+        self.running = Some(Running {
+            model,
+            p,
+            epoch: pair.epoch,
+            begin_ns: time_ns,
+            last_ns: time_ns,
+            updated_ns: time_ns,
+            start_m: Rot::from_wxyz(pair.attitude_m),
+            start_s: Rot::from_wxyz(pair.attitude_s),
+            w_im_m: Vec3::ZERO,
+        });
+    }
+
+    /// Starts anew: the frames of the filter's start are lost.
+    fn reset(&mut self) {
+        self.running = None;
+        self.since_ns = None;
+        self.registration = self.settings.registration.map(|make| make(&self.settings.area));
+        self.news |= Flags::RESET;
+    }
+
+    fn publish(&mut self, pair: &ImuPair, flags: Flags) -> Solution {
+        let mut solution = Solution {
+            header: pair.header,
+            params_id: self.adoption.id(),
+            epoch: pair.epoch,
+            area: self.settings.area.area,
+            flags,
+            ..Solution::default()
+        };
+        let Some(running) = &self.running else { return solution };
+        let View { deformation, rows, noise, static_part, static_rows, rate, rate_rows, drift, delay, skew } =
+            running.model.view();
+        let p = &running.p;
+        let covariance = rows * p * rows.transpose() + noise;
+        let static_covariance = static_rows * p * static_rows.transpose();
+        let dynamic_rows = rows - static_rows;
+        let (a_m, a_s) = (Rot::<MainStart, Main>::from_wxyz(pair.attitude_m), Rot::from_wxyz(pair.attitude_s));
+        let constant: Rot<MainStart, SubStart> = a_m * deformation * Rot::<SubStart, Sub>::inverse(a_s);
+
+        solution.q = deformation.quaternion();
+        solution.static_q = static_part.quaternion();
+        solution.constant = constant.quaternion();
+        solution.phi = deformation.log().array();
+        solution.dynamic = (deformation * static_part.inverse()).log().array();
+        solution.rate = rate.array();
+        solution.drift = drift.array();
+        solution.covariance = row_major(&covariance);
+        solution.static_covariance = row_major(&static_covariance);
+        solution.dynamic_covariance = row_major(&(dynamic_rows * p * dynamic_rows.transpose() + noise));
+        let estimate = |state: Option<(f64, usize)>| state.map_or((0.0, 0.0), |(x, i)| (x, p[(i, i)].sqrt()));
+        (solution.delay, solution.delay_sigma) = estimate(delay);
+        (solution.skew, solution.skew_sigma) = estimate(skew);
+        solution.range = self.evaluation.range(&Evidence {
+            time_s: unit::seconds(pair.header.time_ns - running.begin_ns),
+            interval_s: unit::seconds(pair.interval_ns),
+            w_im_m: running.w_im_m,
+            covariance,
+            static_covariance,
+            rate,
+            rate_covariance: rate_rows * p * rate_rows.transpose(),
+            rate_with_static: rate_rows * p * static_rows.transpose(),
+        });
+        let usable = !flags.contains(Flags::COASTING) && covariance.diagonal().max() < USABLE * USABLE;
+        solution.valid = u32::from(usable);
+        deck(&mut solution, pair, deformation, &covariance);
+        solution
+    }
+}
+
+impl<M: Model<N, K>, const N: usize, const K: usize> Estimator for Matched<M, N, K> {
+    fn offer(&mut self, params: FlexureParams) {
+        if self.adoption.offer(params) {
+            self.news |= Flags::LATE;
+        }
+    }
+
+    fn step(&mut self, pair: &ImuPair) -> Solution {
+        self.adoption.advance(pair.header.time_ns);
+        let mut flags = pair.flags;
+        if self.running.as_ref().is_some_and(|running| running.epoch != pair.epoch) {
+            self.reset();
+        }
+        match &mut self.running {
+            None => self.register(pair),
+            Some(_) if pair.flags.contains(Flags::GAP) => flags |= Flags::COASTING,
+            Some(running) => {
+                if let Some(flexure) = self.adoption.flexure() {
+                    running.model.set_flexure(flexure);
+                }
+                let area = &self.settings.area;
+                let period_s = 1.0 / area.filter_hz - 0.5 * area.interval_s;
+                if running.step(pair, &self.settings.filter, period_s).is_none() {
+                    self.reset();
+                }
+            }
+        }
+        if self.adoption.id() == 0 && self.settings.area.flexure.is_none() {
+            flags |= Flags::PRIOR;
+        }
+        if self.running.is_none() {
+            flags |= Flags::REGISTERING;
+        }
+        flags |= std::mem::take(&mut self.news);
+        self.publish(pair, flags)
+    }
+}
+
+impl<M, const N: usize> Running<M, N> {
+    /// Takes in a pair; `None` when the numbers have become useless.
+    fn step<const K: usize>(&mut self, pair: &ImuPair, filter: &Filter, period_s: f64) -> Option<()>
+    where
+        M: Model<N, K>,
+    {
+        let time_ns = pair.header.time_ns;
+        let interval_s = unit::seconds(time_ns - self.last_ns);
+        self.last_ns = time_ns;
+        let dtheta_m = Vec3::from(pair.dtheta_m);
+        self.w_im_m = dtheta_m / unit::seconds(pair.interval_ns).max(f64::MIN_POSITIVE);
+        self.model.advance(&Motion {
+            time_s: unit::seconds(time_ns - self.begin_ns),
+            interval_s,
+            a_m: (self.start_m.inverse() * Rot::<MainStart, Main>::from_wxyz(pair.attitude_m)).relabel(),
+            a_s: (self.start_s.inverse() * Rot::<SubStart, Sub>::from_wxyz(pair.attitude_s)).relabel(),
+            dtheta_m,
+            dtheta_s: Vec3::from(pair.dtheta_s),
+            dvel_m: Vec3::from(pair.dvel_m),
+            dvel_s: Vec3::from(pair.dvel_s),
+            disturbance: pair.disturbance,
+        });
+        if unit::seconds(time_ns - self.updated_ns) >= period_s {
+            self.updated_ns = time_ns;
+            let Prediction { transition, noise } = self.model.propagate();
+            self.p = transition * self.p * transition.transpose() + noise;
+            symmetrise(&mut self.p);
+            filter.correct(&mut self.model, &mut self.p, &noise)?;
+        }
+        let view = self.model.view();
+        let variances = self.p.diagonal();
+        let sound = variances.iter().all(|v| v.is_finite() && *v >= 0.0) && view.deformation.log().is_finite();
+        (sound && (view.rows * self.p * view.rows.transpose()).diagonal().max() < LOST * LOST).then_some(())
+    }
+}

@@ -1,0 +1,62 @@
+//! The fast stage: registration, then a matching model with its filter, with an output at every pair.
+
+mod adoption;
+mod matched;
+mod so3;
+
+pub use matched::{MakeRegister, Matched, MatchedSettings};
+pub use so3::So3Estimator;
+
+use crate::flexure::Flexure;
+use crate::matching::so3::Grade;
+use frames::{Main, Nav, Rot, Sub};
+use messages::{FlexureParams, ImuPair, Solution};
+use nalgebra::Matrix3;
+
+/// A surveyed installation to fall back to.
+#[derive(Clone, Copy, Debug)]
+pub struct Installation {
+    /// `C_s^m`.
+    pub rotation: Rot<Main, Sub>,
+    /// Standard deviation of its error about each axis, rad.
+    pub sigma: f64,
+}
+
+/// Settings of the estimator of one area.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Index of the area.
+    pub area: u32,
+    /// Figures of both units, and how restless the static part is.
+    pub grade: Grade,
+    /// Nominal sampling interval, s.
+    pub interval_s: f64,
+    /// Rate of the filter, Hz; the output comes at every pair all the same.
+    pub filter_hz: f64,
+    /// How long to wait for the motion to show the installation before the surveyed one is taken, s.
+    pub registration_s: f64,
+    /// The surveyed installation, if there is one.
+    pub installation: Option<Installation>,
+    /// A flexure model known beforehand; otherwise a broad guess is made at registration.
+    pub flexure: Option<[Flexure; 3]>,
+}
+
+/// The flexure model of a parameter set.
+pub fn model(params: &FlexureParams) -> [Flexure; 3] {
+    std::array::from_fn(|i| Flexure { mu: params.mu[i], b: params.b[i], sigma: params.sigma[i] })
+}
+
+fn row_major(m: &Matrix3<f64>) -> [f64; 9] {
+    std::array::from_fn(|i| m[(i / 3, i % 3)])
+}
+
+/// Fills in the attitude of the deck where the main unit's is known.
+fn deck(solution: &mut Solution, pair: &ImuPair, deformation: Rot<Main, Sub>, covariance: &Matrix3<f64>) {
+    if pair.ins != [0.0; 4] {
+        let ship = Rot::<Nav, Main>::from_wxyz(pair.ins);
+        let c = ship.matrix();
+        let turned = (c * covariance * c.transpose()).diagonal();
+        solution.deck = (ship * deformation).quaternion();
+        solution.deck_sigma = std::array::from_fn(|i| (turned[i] + pair.ins_sigma[i].powi(2)).sqrt());
+    }
+}

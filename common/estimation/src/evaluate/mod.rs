@@ -1,0 +1,45 @@
+//! Error ranges: how far the published deformation may be off.
+//!
+//! | range | file |
+//! |---|---|
+//! | so many standard deviations | [`Deviations`] |
+
+use frames::{Main, Vec3};
+use nalgebra::Matrix3;
+
+/// What a range is made of, at one instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Evidence {
+    /// Time since the filter's start, s.
+    pub time_s: f64,
+    /// Time since the evidence before, s.
+    pub interval_s: f64,
+    /// Rate of the ship, rad/s.
+    pub w_im_m: Vec3<Main>,
+    /// Covariance of the error of the total deformation, rad^2.
+    pub covariance: Matrix3<f64>,
+    /// Covariance of the error of the static part, rad^2.
+    pub static_covariance: Matrix3<f64>,
+    /// Rate of the flexure as estimated, rad/s.
+    pub rate: Vec3<Main>,
+    /// Covariance of its error, rad^2/s^2.
+    pub rate_covariance: Matrix3<f64>,
+    /// Covariance of the error of the rate (row) with that of the static part (column), rad^2/s.
+    pub rate_with_static: Matrix3<f64>,
+}
+
+/// A kind of range.
+pub trait Evaluate: Send {
+    /// Half width of the range about each axis of m, rad.
+    fn range(&mut self, evidence: &Evidence) -> [f64; 3];
+}
+
+/// So many standard deviations of the total: 1.96 for 95 % of a normal error, 3 for the naive range of paper 004.
+#[derive(Clone, Copy, Debug)]
+pub struct Deviations(pub f64);
+
+impl Evaluate for Deviations {
+    fn range(&mut self, evidence: &Evidence) -> [f64; 3] {
+        evidence.covariance.diagonal().map(|variance| self.0 * variance.sqrt()).into()
+    }
+}
