@@ -31,6 +31,13 @@ struct Pose {
     lever_velocity_i: Vec3<Inertial>,
 }
 
+/// What every unit of a run shares.
+pub(crate) struct Run {
+    pub(crate) rate_hz: f64,
+    pub(crate) seed: u64,
+    pub(crate) run_id: u64,
+}
+
 /// What the main unit went through since its last sample.
 pub(crate) struct Leg {
     pub(crate) from: Motion,
@@ -40,14 +47,14 @@ pub(crate) struct Leg {
 
 impl Deck {
     /// `begin_ns` is where the main unit's first sample begins.
-    pub(crate) fn new(area: &Area, index: u32, rate_hz: f64, seed: u64, run_id: u64, begin_ns: i64) -> Self {
-        let source = |purpose, index: u32| Source::new(seed, purpose, u64::from(index));
+    pub(crate) fn new(area: &Area, index: u32, run: &Run, sea: &Sea, begin_ns: i64) -> Self {
+        let Run { rate_hz, seed, run_id } = *run;
         let sampling = Sampling::new(rate_hz * (1.0 + area.wire.rate_error), area.wire.phase_s);
         let next = sampling.last_by(begin_ns);
         Self {
-            hull: Hull::new(area, source(Purpose::Flexure, index), begin_ns.min(sampling.instant(next))),
-            imu: Imu::new(&area.unit, source(Purpose::Unit, index + 1)),
-            line: Line::new(&area.wire, source(Purpose::Wire, index)),
+            hull: Hull::new(area, u64::from(index), seed, sea, begin_ns.min(sampling.instant(next))),
+            imu: Imu::new(&area.unit, seed, u64::from(index) + 1),
+            line: Line::new(&area.wire, Source::new(seed, Purpose::Wire, u64::from(index))),
             sampling,
             next,
             last: None,
@@ -64,11 +71,11 @@ impl Deck {
             if end_ns > now_ns {
                 break;
             }
-            self.hull.advance(end_ns);
+            self.hull.advance(sea, end_ns);
             self.sample(sea, leg, end_ns);
             self.next += 1;
         }
-        self.hull.advance(now_ns);
+        self.hull.advance(sea, now_ns);
         self.line.deliver(now_ns, out);
     }
 
@@ -82,7 +89,7 @@ impl Deck {
         Truth {
             header: header(self.run_id, sequence, motion.time_ns),
             q: self.hull.main_from_sub().quaternion(),
-            static_q: self.hull.installation().quaternion(),
+            static_q: self.hull.static_part().quaternion(),
             dynamic: self.hull.theta().array(),
             ship: motion.nav_from_main.quaternion(),
             area: self.index,

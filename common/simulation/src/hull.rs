@@ -1,79 +1,142 @@
-//! The true deformation of one area: `C_s^m(t) = Exp(theta(t)) C_Phi`, and the lever arm that bends with it.
+//! The true deformation of one area, as [`Area`] defines it, and the lever arm that bends with it.
 
-use crate::gauss_markov::Step;
-use crate::random::Source;
-use crate::{Area, GaussMarkov};
-use frames::unit::seconds;
+use crate::coupling::Coherence;
+use crate::impulses::Gusts;
+use crate::processes::Processes;
+use crate::random::{Purpose, Source};
+use crate::sampling::NEVER;
+use crate::sea::Sea;
+use crate::{Area, FlexureChange, QuasiStatic};
+use frames::unit::{nanoseconds, seconds};
 use frames::{Main, Rot, Sub, Vec3};
+use std::f64::consts::TAU;
 
 /// A hull that remembers how it is bent now.
 pub(crate) struct Hull {
     lever_arm: Vec3<Main>,
     gain: f64,
     installation: Rot<Main, Sub>,
-    models: [GaussMarkov; 3],
-    /// `[angle, rate]` about each axis, rad and rad/s.
-    state: [[f64; 2]; 3],
-    time_ns: i64,
-    /// The last two lengths of step (ns): a fixed offset between two units of one rate makes two that alternate.
-    steps: [(i64, [Step; 3]); 2],
+    quasi_static: QuasiStatic,
+    flexure: Processes<3>,
     source: Source,
+    /// In the order of their times; those before `next_change` are done.
+    changes: Vec<FlexureChange>,
+    next_change: usize,
+    gusts: Option<Gusts>,
+    coherence: Option<Coherence>,
+    /// How far the processes are.
+    time_ns: i64,
+    now: Bend,
+}
+
+/// How the hull is bent at one instant.
+#[derive(Clone, Copy)]
+struct Bend {
+    /// rad.
+    theta: Vec3<Main>,
+    /// rad/s.
+    rate: Vec3<Main>,
+    static_part: Rot<Main, Sub>,
+}
+
+impl QuasiStatic {
+    /// The rotation vector at the time `t`, rad.
+    fn at(&self, t: f64) -> Vec3<Main> {
+        let w = TAU / self.period;
+        Vec3::from([0, 1, 2].map(|k| self.amplitude[k] * (w * t + self.phase[k]).sin()))
+    }
 }
 
 impl Hull {
-    /// A hull in its stationary state at the given time.
-    pub(crate) fn new(area: &Area, mut source: Source, time_ns: i64) -> Self {
-        let state = area.flexure.map(|m| [m.sigma * source.normal(), m.b * m.sigma * source.normal()]);
-        let still = (0, area.flexure.map(|m| Step::over(&m, 0.0)));
-        Self {
+    /// A hull at the given time, which is not after the start of the run.
+    pub(crate) fn new(area: &Area, index: u64, seed: u64, sea: &Sea, time_ns: i64) -> Self {
+        let mut source = Source::new(seed, Purpose::Flexure, index);
+        let mut flexure = Processes::stationary(area.flexure, &mut source);
+        if area.starts_at_rest {
+            flexure.rest();
+        }
+        let mut changes = area.flexure_changes.clone();
+        changes.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+        let coherence = area.coupling.map(|coupling| {
+            Coherence::new(&coupling, area, sea.swing_rms(), Source::new(seed, Purpose::Coupling, index))
+        });
+        let mut hull = Self {
             lever_arm: area.lever_arm,
             gain: area.dynamic_lever_arm,
             installation: area.installation,
-            models: area.flexure,
-            state,
-            time_ns,
-            steps: [still, still],
+            quasi_static: area.quasi_static,
+            flexure,
             source,
-        }
+            changes,
+            next_change: 0,
+            gusts: area.impulses.and_then(|i| Gusts::new(&i, Source::new(seed, Purpose::Impulses, index))),
+            coherence,
+            time_ns: if area.starts_at_rest { time_ns.max(0) } else { time_ns },
+            now: Bend { theta: Vec3::ZERO, rate: Vec3::ZERO, static_part: area.installation },
+        };
+        hull.bend(sea, time_ns);
+        hull
     }
 
-    /// Bends on to a later instant; an earlier one is left alone.
-    pub(crate) fn advance(&mut self, time_ns: i64) {
-        if time_ns <= self.time_ns {
-            return;
+    /// Bends on to a later instant; the same one again changes nothing.
+    pub(crate) fn advance(&mut self, sea: &Sea, time_ns: i64) {
+        while self.time_ns < time_ns {
+            let until_ns = self.stretch(time_ns);
+            self.time_ns = until_ns;
         }
-        let interval_ns = time_ns - self.time_ns;
-        if self.steps[0].0 != interval_ns {
-            self.steps.swap(0, 1);
+        self.bend(sea, time_ns);
+    }
+
+    /// Steps the processes on to where the models or the strength of the noise change, at most to `time_ns`.
+    fn stretch(&mut self, time_ns: i64) -> i64 {
+        let due = |change: &FlexureChange| nanoseconds(change.at_s);
+        while let Some(change) = self.changes.get(self.next_change)
+            && due(change) <= self.time_ns
+        {
+            self.flexure.change(change.flexure);
+            self.next_change += 1;
         }
-        if self.steps[0].0 != interval_ns {
-            self.steps[0] = (interval_ns, self.models.map(|m| Step::over(&m, seconds(interval_ns))));
+        let change_ns = self.changes.get(self.next_change).map_or(NEVER, due);
+        let (gain, gust_ns) = self.gusts.as_mut().map_or((1.0, NEVER), |gusts| gusts.at(self.time_ns));
+        let until_ns = time_ns.min(change_ns).min(gust_ns);
+        self.flexure.advance(until_ns - self.time_ns, gain, &mut self.source);
+        if let Some(coherence) = &mut self.coherence {
+            coherence.advance(until_ns - self.time_ns);
         }
-        for (state, step) in self.state.iter_mut().zip(&self.steps[0].1) {
-            *state = step.apply(*state, [self.source.normal(), self.source.normal()]);
+        until_ns
+    }
+
+    fn bend(&mut self, sea: &Sea, time_ns: i64) {
+        self.now.theta = self.flexure.state().map(|[angle, _]| angle).into();
+        self.now.rate = self.flexure.state().map(|[_, rate]| rate).into();
+        if let Some(coherence) = &self.coherence {
+            let [angle, rate] = coherence.bend(&sea.swing(seconds(time_ns)));
+            self.now.theta += angle;
+            self.now.rate += rate;
         }
-        self.time_ns = time_ns;
+        if self.quasi_static.period > 0.0 {
+            self.now.static_part = Rot::exp(self.quasi_static.at(seconds(time_ns))) * self.installation;
+        }
     }
 
     /// The flexure theta, rad.
     pub(crate) fn theta(&self) -> Vec3<Main> {
-        self.state.map(|[angle, _]| angle).into()
+        self.now.theta
     }
 
-    /// The static part `C_Phi`.
-    pub(crate) fn installation(&self) -> Rot<Main, Sub> {
-        self.installation
+    /// The static part `Exp(q) C_Phi`.
+    pub(crate) fn static_part(&self) -> Rot<Main, Sub> {
+        self.now.static_part
     }
 
     /// The whole deformation `C_s^m`.
     pub(crate) fn main_from_sub(&self) -> Rot<Main, Sub> {
-        Rot::<Main, Main>::exp(self.theta()) * self.installation
+        Rot::<Main, Main>::exp(self.now.theta) * self.now.static_part
     }
 
     /// Velocity of the sub unit relative to the main unit in inertial space, m/s: `w x r + r'`, 000 eq 6, 7.
     pub(crate) fn lever_velocity(&self, w_im_m: Vec3<Main>) -> Vec3<Main> {
-        let rate: Vec3<Main> = self.state.map(|[_, rate]| rate).into();
-        let r = self.lever_arm + (self.theta() * self.gain).cross(self.lever_arm);
-        w_im_m.cross(r) + (rate * self.gain).cross(self.lever_arm)
+        let r = self.lever_arm + (self.now.theta * self.gain).cross(self.lever_arm);
+        w_im_m.cross(r) + (self.now.rate * self.gain).cross(self.lever_arm)
     }
 }

@@ -1,15 +1,16 @@
 //! The ship, its bending hull and its inertial units: what a filter may never see.
 //!
-//! Source: paper 000 section 5, with its equations corrected. A [`Scenario`] describes a run completely: the same scenario gives
+//! Source: the scenarios of papers 000 to 004, with their equations corrected; the defaults are 000 section 5. A [`Scenario`] describes a run completely: the same scenario gives
 //! the same bits, and no clock is ever read.
 //!
 //! | what | how |
 //! |---|---|
-//! | ship | roll, pitch and heading sway as sines (000 eq 79); constant speed; `n` turns against inertial space at a constant rate |
-//! | hull | `C_s^m(t) = Exp(theta(t)) C_Phi`, each component of theta a second-order Gauss-Markov process (000 eq 3), stepped exactly |
+//! | ship | roll, pitch and heading each a sine (000 eq 79), many tones (002) or a Gauss-Markov process (003 eq 30), band-limited or not; turns (004); constant speed; `n` turns against inertial space at a constant rate |
+//! | hull | `C_s^m(t) = Exp(theta(t)) Exp(q(t)) C_Phi`: [`Area`] defines it; each component of theta a second-order Gauss-Markov process (000 eq 3), stepped exactly, whose model can change (002) and whose waves can be impulsive (000) |
+//! | coupling | flexure in step with the ship's swing (004): [`Coupling`] defines it |
 //! | lever arm | `r = r0 + g theta x r0` (000 eq 6), `g` the gain that the scenario gives |
 //! | increments | exact rotation vectors between true attitudes, and specific force turned with the attitude half way |
-//! | errors | constant bias, scale and misalignment of a run, and white noise |
+//! | errors | constant bias, scale and misalignment of a run, white noise, a first-order Gauss-Markov bias (001), outliers (000) |
 //! | wire | late, drifting and noisy stamps, own sampling instants, loss, duplicates, swaps |
 //!
 //! ```
@@ -23,16 +24,27 @@
 //! assert_eq!(epochs, 6);
 //! ```
 
+mod area;
+mod coupling;
 mod deck;
 mod gauss_markov;
 mod hull;
+mod impulses;
 mod imu;
+mod knots;
+mod process;
+mod processes;
 mod random;
 mod sampling;
 mod scenario;
 mod sea;
+mod ship;
 mod simulator;
+mod swing;
+mod turns;
 mod wire;
 
-pub use scenario::{Area, GaussMarkov, InsErrors, Oscillation, Scenario, Ship, Unit, Wire};
+pub use area::{Area, Coupling, FlexureChange, GaussMarkov, Impulses, QuasiStatic};
+pub use scenario::{InsErrors, Outliers, Scenario, Unit, Wander, Wire};
+pub use ship::{Oscillation, RandomSwing, Ship, Swing, Tones, Turns};
 pub use simulator::{Epoch, Simulator};

@@ -9,6 +9,11 @@ pub(crate) enum Purpose {
     Flexure = 2,
     Wire = 3,
     Ins = 4,
+    Sea = 5,
+    BiasWander = 6,
+    Outlier = 7,
+    Impulses = 8,
+    Coupling = 9,
 }
 
 /// A random source of its own for every purpose and area, so that drawing more in one never shifts another.
@@ -40,9 +45,14 @@ impl Source {
         [self.normal(), self.normal(), self.normal()]
     }
 
+    /// Uniform on 0 to 1, without 1.
+    pub(crate) fn uniform(&mut self) -> f64 {
+        self.0.random::<f64>()
+    }
+
     /// True with the probability `p`; draws the same amount whatever `p` is.
     pub(crate) fn happens(&mut self, p: f64) -> bool {
-        self.0.random::<f64>() < p
+        self.uniform() < p
     }
 }
 
@@ -60,7 +70,8 @@ mod tests {
 
     #[test]
     fn no_two_purposes_share_a_stream() {
-        let purposes = [Purpose::Unit, Purpose::Flexure, Purpose::Wire, Purpose::Ins];
+        use Purpose::*;
+        let purposes = [Unit, Flexure, Wire, Ins, Sea, BiasWander, Outlier, Impulses, Coupling];
         let mut first: Vec<u64> = (0..20)
             .flat_map(|seed| purposes.iter().flat_map(move |p| (0..5).map(move |i| (seed, *p, i))))
             .map(|(seed, purpose, index)| Source::new(seed, purpose, index).0.next_u64())

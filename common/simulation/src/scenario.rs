@@ -1,7 +1,8 @@
 //! What is simulated, as plain data. The defaults are the demonstration of paper 000 section 5.
 
-use frames::unit::{ARCMIN, ARCSEC, DEG_PER_H, DEG_PER_SQRT_H, DEGREE, KNOT, MICRO_G, PPM};
-use frames::{Case, Frame, Main, Rot, Sub, Vec3};
+use crate::{Area, Ship};
+use frames::unit::{ARCSEC, DEG_PER_H, DEG_PER_SQRT_H, MICRO_G, PPM};
+use frames::{Case, Frame, Main, Rot, Sub};
 
 /// A whole run. Without a positive finite rate the simulator gives nothing.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,54 +40,6 @@ impl Default for Scenario {
     }
 }
 
-/// Motion of the ship, 000 eq 79.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ship {
-    /// Latitude, rad, strictly between the poles; kept constant.
-    pub latitude: f64,
-    /// Longitude, rad: where the scenario plays; nothing that the units feel depends on it.
-    pub longitude: f64,
-    /// Speed over ground, m/s, constant.
-    pub speed: f64,
-    /// Mean heading and course, rad, clockwise from north.
-    pub course: f64,
-    /// Roll, positive with the port side up.
-    pub roll: Oscillation,
-    /// Pitch, positive with the bow up.
-    pub pitch: Oscillation,
-    /// Heading about the course.
-    pub heading: Oscillation,
-    /// Whether the velocity points along the momentary heading, which accelerates the ship sideways, or along the course.
-    pub velocity_follows_heading: bool,
-}
-
-impl Default for Ship {
-    fn default() -> Self {
-        let sway = |period| Oscillation { amplitude: 10.0 * DEGREE, period, phase: 0.0 };
-        Self {
-            latitude: 45.0 * DEGREE,
-            longitude: 126.0 * DEGREE,
-            speed: 20.0 * KNOT,
-            course: 45.0 * DEGREE,
-            roll: sway(8.0),
-            pitch: sway(8.0),
-            heading: sway(10.0),
-            velocity_follows_heading: false,
-        }
-    }
-}
-
-/// `amplitude sin(2 pi t / period + phase)`. The default is none.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Oscillation {
-    /// rad; 0 for no sway.
-    pub amplitude: f64,
-    /// s; without a positive period the angle stands still.
-    pub period: f64,
-    /// rad.
-    pub phase: f64,
-}
-
 /// Errors of an inertial unit with body axes `B`. What is given as "1 sigma" is drawn once a run for each axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit<B: Frame> {
@@ -106,8 +59,32 @@ pub struct Unit<B: Frame> {
     pub accel_scale: f64,
     /// Each of the six off-diagonals of the accelerometers' error matrix, rad, 1 sigma.
     pub accel_misalignment: f64,
+    /// What the gyros' biases do beside that.
+    pub bias_wander: Wander,
+    /// Samples that are far off, of gyros and accelerometers alike.
+    pub outliers: Outliers,
     /// "Body from case". Samples are in case axes, the errors are those of the case axes.
     pub mounting: Rot<B, Case>,
+}
+
+/// A first-order Gauss-Markov process of each axis, stationary from the start. The default is none.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wander {
+    /// Standard deviation, rad/s.
+    pub sigma: f64,
+    /// Correlation time, s; positive unless sigma is 0.
+    pub tau: f64,
+}
+
+/// Contaminated noise, 000 section 5: each axis of a sample is now and then far off. The default is never.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outliers {
+    /// Probability of an outlier for each axis of a sample.
+    pub probability: f64,
+    /// How far off, in standard deviations of the white noise of that sample.
+    pub size: f64,
+    /// Whether all are positive, or else of either sign alike.
+    pub one_sided: bool,
 }
 
 impl<B: Frame> Unit<B> {
@@ -122,6 +99,8 @@ impl<B: Frame> Unit<B> {
             accel_bias: 0.0,
             accel_scale: 0.0,
             accel_misalignment: 0.0,
+            bias_wander: Wander { sigma: 0.0, tau: 0.0 },
+            outliers: Outliers { probability: 0.0, size: 0.0, one_sided: false },
             mounting: Rot::identity(),
         }
     }
@@ -139,7 +118,7 @@ impl Default for Unit<Main> {
             accel_bias: 10.0 * MICRO_G,
             accel_scale: PPM,
             accel_misalignment: ARCSEC,
-            mounting: Rot::identity(),
+            ..Self::ideal()
         }
     }
 }
@@ -156,7 +135,7 @@ impl Default for Unit<Sub> {
             accel_bias: 50.0 * MICRO_G,
             accel_scale: 5.0 * PPM,
             accel_misalignment: 5.0 * ARCSEC,
-            mounting: Rot::identity(),
+            ..Self::ideal()
         }
     }
 }
@@ -174,59 +153,6 @@ pub struct InsErrors {
 impl Default for InsErrors {
     fn default() -> Self {
         Self { attitude: [10.0 * ARCSEC, 10.0 * ARCSEC, 30.0 * ARCSEC], noise: ARCSEC }
-    }
-}
-
-/// A deck area with its sub unit.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Area {
-    /// From the main to the sub unit while the hull is not bent, m.
-    pub lever_arm: Vec3<Main>,
-    /// Gain g of the bent lever arm `r = r0 + g theta x r0`: 1 as in 000 eq 6, 0 for a lever arm that does not bend.
-    pub dynamic_lever_arm: f64,
-    /// The static part `C_Phi` of the deformation, which includes how the unit was installed.
-    pub installation: Rot<Main, Sub>,
-    /// The flexure about x, y, z of m.
-    pub flexure: [GaussMarkov; 3],
-    /// The sub unit.
-    pub unit: Unit<Sub>,
-    /// What happens to its samples on their way.
-    pub wire: Wire,
-}
-
-impl Default for Area {
-    fn default() -> Self {
-        Self {
-            lever_arm: Vec3::new(10.0, 10.0, 2.0),
-            dynamic_lever_arm: 1.0,
-            installation: Rot::exp(Vec3::new(10.0 * ARCMIN, 10.0 * ARCMIN, 30.0 * ARCMIN)),
-            flexure: [
-                GaussMarkov::critical(10.0, 6.0 * ARCMIN),
-                GaussMarkov::critical(10.0, 6.0 * ARCMIN),
-                GaussMarkov::critical(30.0, 10.0 * ARCMIN),
-            ],
-            unit: Unit::default(),
-            wire: Wire::default(),
-        }
-    }
-}
-
-/// Flexure of one axis, 000 eq 3: `x'' + 2 mu x' + b^2 x = w`, density of w `4 mu b^2 sigma^2`, stationary from the start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GaussMarkov {
-    /// Damping, 1/s.
-    pub mu: f64,
-    /// Natural frequency, rad/s.
-    pub b: f64,
-    /// Standard deviation, rad.
-    pub sigma: f64,
-}
-
-impl GaussMarkov {
-    /// Critically damped, with an autocovariance that has fallen to 1/e after `tau` s: `mu = b = 2.146 / tau`.
-    pub const fn critical(tau: f64, sigma: f64) -> Self {
-        let beta = 2.146 / tau;
-        Self { mu: beta, b: beta, sigma }
     }
 }
 

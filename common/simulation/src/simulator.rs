@@ -1,4 +1,4 @@
-use crate::deck::{Deck, Leg};
+use crate::deck::{Deck, Leg, Run};
 use crate::imu::Imu;
 use crate::random::{Purpose, Source};
 use crate::sampling::{NEVER, Sampling};
@@ -41,8 +41,10 @@ impl Simulator {
         let Scenario { rate_hz, seed, run_id, .. } = *scenario;
         let sampling = Sampling::new(rate_hz, 0.0);
         let begin_ns = sampling.instant(-1);
-        let sea = Sea::new(scenario.ship);
-        let deck = |(index, area)| Deck::new(area, index, rate_hz, seed, run_id, begin_ns);
+        let sea = Sea::new(scenario.ship, seed, history_s(scenario));
+        let run = Run { rate_hz, seed, run_id };
+        let decks =
+            (0..).zip(&scenario.areas).map(|(index, area)| Deck::new(area, index, &run, &sea, begin_ns)).collect();
         Self {
             motion: sea.at(begin_ns),
             sea,
@@ -50,9 +52,9 @@ impl Simulator {
             next: 0,
             last_ns: scenario.duration_s.map_or(NEVER, nanoseconds).min(NEVER - 1),
             run_id,
-            imu: Imu::new(&scenario.main, Source::new(seed, Purpose::Unit, 0)),
+            imu: Imu::new(&scenario.main, seed, 0),
             ins: Ins::new(scenario.ins, Source::new(seed, Purpose::Ins, 0)),
-            decks: (0..).zip(&scenario.areas).map(deck).collect(),
+            decks,
             epoch: Epoch::default(),
         }
     }
@@ -68,6 +70,7 @@ impl Simulator {
         let sequence = self.next as u64;
         self.next += 1;
         let ended = self.sampling.instant(self.next) > self.last_ns;
+        self.sea.advance(time_ns);
         let to = self.sea.at(time_ns);
         let leg = Leg { from: self.motion, to, dvel_i: self.sea.velocity_increment(&self.motion, &to) };
         self.motion = to;
@@ -92,6 +95,13 @@ impl Simulator {
         let (dtheta, dvel) = self.imu.measure(dtheta, dvel, seconds(interval_ns));
         ImuSample { header, interval_ns, dtheta, dvel, ..ImuSample::default() }
     }
+}
+
+/// How far back a sample can reach: a unit's slowest period before one of the main unit's.
+fn history_s(scenario: &Scenario) -> f64 {
+    let slowest = scenario.areas.iter().map(|area| 1.0 + area.wire.rate_error).fold(1.0, f64::min);
+    let period = 1.0 / scenario.rate_hz;
+    period + period / slowest.max(1e-6)
 }
 
 /// The main INS with the errors that this run gave it.

@@ -109,3 +109,27 @@ fn impossible_scenarios_end_at_once() {
         assert!(epochs.len() == 501 && epochs.iter().all(|epoch| epoch.sub.is_empty() && epoch.truth.len() == 1));
     }
 }
+
+/// Checksum of all numbers of a run (FNV-1a over the bits).
+fn checksum(scenario: &Scenario) -> u64 {
+    run(scenario).iter().fold(0xcbf2_9ce4_8422_2325, |sum, epoch| {
+        let units = std::iter::once(&epoch.main).chain(&epoch.sub).flat_map(|s| s.dtheta.into_iter().chain(s.dvel));
+        let truth = epoch.truth.iter().flat_map(|t| t.q.into_iter().chain(t.static_q).chain(t.dynamic).chain(t.ship));
+        units.chain(truth).chain(epoch.attitude.q).fold(sum, |sum, number: f64| {
+            number
+                .to_bits()
+                .to_le_bytes()
+                .iter()
+                .fold(sum, |sum, byte| (sum ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3))
+        })
+    })
+}
+
+/// What is added to the simulator must not move what was there.
+#[test]
+fn the_demonstration_keeps_its_bits() {
+    let mut rough = demo(2);
+    rough.areas[0].wire = Wire { phase_s: 0.003, rate_error: 1e-3, ..ROUGH };
+    rough.ship.velocity_follows_heading = true;
+    assert_eq!([checksum(&demo(1)), checksum(&rough)], [3_836_885_592_862_173_388, 12_709_470_766_344_004_344]);
+}

@@ -17,8 +17,8 @@ fn ideal(seed: u64) -> Scenario {
 
 fn still(scenario: &mut Scenario) {
     scenario.ship.speed = 0.0;
-    for sway in [&mut scenario.ship.roll, &mut scenario.ship.pitch, &mut scenario.ship.heading] {
-        sway.amplitude = 0.0;
+    for swing in [&mut scenario.ship.roll, &mut scenario.ship.pitch, &mut scenario.ship.heading] {
+        *swing = Swing::STILL;
     }
 }
 
@@ -155,7 +155,8 @@ fn the_sub_unit_feels_its_lever_arm() {
         let mut scenario = ideal(seed);
         scenario.rate_hz = 200.0;
         scenario.ship.velocity_follows_heading = follows;
-        scenario.ship.heading.phase = 0.4;
+        scenario.ship.heading =
+            Swing::Sine(Oscillation { amplitude: 10.0 * DEGREE, period: 10.0, phase: 0.4, random_phase: false });
         let area = &mut scenario.areas[0];
         area.dynamic_lever_arm = gain;
         area.wire.rate_error = factor - 1.0;

@@ -190,9 +190,9 @@ fn constant_errors_spread_over_the_seeds_as_given() {
         for seed in 0..seeds {
             let mut scenario = quiet(seed);
             scenario.ship.speed = 0.0;
-            scenario.ship.roll.amplitude = 0.0;
-            scenario.ship.pitch.amplitude = 0.0;
-            scenario.ship.heading.amplitude = 0.0;
+            scenario.ship.roll = Swing::STILL;
+            scenario.ship.pitch = Swing::STILL;
+            scenario.ship.heading = Swing::STILL;
             change(&mut scenario);
             let rows = errors(&scenario, 2);
             assert!((rows[0][2] - rows[1][2]).norm() < 1e-12, "constant over the run");

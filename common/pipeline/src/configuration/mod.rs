@@ -1,20 +1,25 @@
 //! The configuration: one TOML file whose keys carry their unit; SI units from here on.
 
 mod area;
+mod area_simulation;
 mod document;
 mod error;
+mod flexure;
 mod instrument;
 mod quantity;
 mod rules;
 mod scenario;
 mod simulation;
 mod stages;
+mod swing;
 mod table;
+mod unit_errors;
 
 pub use area::{Area, Installation, MainUnit};
+pub use area_simulation::AreaSimulation;
 pub use error::ConfigurationError;
 pub use instrument::{Accel, Gyro, Source};
-pub use simulation::{AreaSimulation, Ins, Simulation, Sway, Wire};
+pub use simulation::{Ins, Simulation, Wire};
 pub use stages::{
     EstimatorSettings, FilterMethod, IdentifierMethod, IdentifierSettings, MatchingMethod, RangeMethod,
     RegistrationMethod,

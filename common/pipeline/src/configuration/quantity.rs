@@ -164,7 +164,29 @@ quantities! {
     delay_ms: 1e-3, -1000.0, 1000.0;
     milliseconds: 1e-3, 0.0, 1000.0;
     jitter_us: 1e-6, 0.0, 1e5;
+    frequency_hz: 1.0, 0.0, 20.0;
+    band_limit_hz: 1.0, 0.05, 5.0;
+    turn_deg_per_s: unit::DEGREE, -10.0, 10.0;
+    turn_s: 1.0, 1.0, 86_400.0;
+    change_s: 1.0, 0.0, 1e8;
+    flexure_arcsec: unit::ARCSEC, 0.0, 36_000.0;
+    flexure_mrad: 1e-3, 0.0, 180.0;
+    quasi_static_arcsec: unit::ARCSEC, -36_000.0, 36_000.0;
+    quasi_static_s: 1.0, 60.0, 1e6;
+    factor: 1.0, 0.0, 1e5;
+    percent: 0.01, 0.0, 100.0;
+    cell_ms: 1e-3, 0.1, 10_000.0;
+    wander_s: 1.0, 1.0, 1e6;
+    wander_h: 3600.0, 0.01, 1000.0;
     clock_ppm: unit::PPM, -10_000.0, 10_000.0;
+}
+
+/// The number of sinusoids that make a sea.
+pub(super) fn tones<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<usize>, D::Error> {
+    match usize::deserialize(deserializer)? {
+        n @ 1..=1000 => Ok(Some(n)),
+        _ => Err(D::Error::custom("must be within 1 to 1000")),
+    }
 }
 
 /// The number of flexure models in the identifier's dictionary.

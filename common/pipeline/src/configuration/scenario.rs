@@ -1,8 +1,8 @@
 //! What the simulator is told, from the configuration.
 
-use super::{Accel, Area, Configuration, Gyro, Sway};
+use super::{Accel, Area, Configuration, Gyro};
 use frames::{Case, Frame, Rot};
-use simulation::{InsErrors, Oscillation, Scenario, Ship, Unit, Wire};
+use simulation::{InsErrors, Scenario, Ship, Unit, Wire};
 
 impl Configuration {
     /// The simulated run. The true errors of a unit are those of its configured grade unless `[simulation]` gives others.
@@ -18,20 +18,20 @@ impl Configuration {
                 longitude: s.longitude,
                 speed: s.speed,
                 course: s.course,
-                roll: oscillation(s.roll),
-                pitch: oscillation(s.pitch),
-                heading: oscillation(s.heading),
+                roll: s.roll,
+                pitch: s.pitch,
+                heading: s.heading,
                 velocity_follows_heading: s.velocity_follows_heading,
+                turns: s.turns,
             },
-            main: unit(s.gyro.unwrap_or(self.main.gyro), s.accel.or(self.main.accel), self.main.mounting),
+            main: Unit {
+                bias_wander: s.bias_wander,
+                ..unit(s.gyro.unwrap_or(self.main.gyro), s.accel.or(self.main.accel), self.main.mounting)
+            },
             ins: InsErrors { attitude: [s.ins.level, s.ins.level, s.ins.heading], noise: s.ins.noise },
             areas: self.areas.iter().map(area).collect(),
         }
     }
-}
-
-fn oscillation(sway: Sway) -> Oscillation {
-    Oscillation { amplitude: sway.amplitude, period: sway.period, phase: sway.phase }
 }
 
 fn unit<B: Frame>(gyro: Gyro, accel: Option<Accel>, mounting: Rot<B, Case>) -> Unit<B> {
@@ -54,8 +54,17 @@ fn area(area: &Area) -> simulation::Area {
         lever_arm: area.lever_arm,
         dynamic_lever_arm: s.dynamic_lever_arm,
         installation: Rot::exp(s.installation),
+        quasi_static: s.quasi_static,
         flexure: s.flexure,
-        unit: unit(gyro, s.accel.or(area.accel), area.mounting),
+        flexure_changes: s.flexure_changes.clone(),
+        starts_at_rest: s.starts_at_rest,
+        impulses: s.impulses,
+        coupling: s.coupling,
+        unit: Unit {
+            bias_wander: s.bias_wander,
+            outliers: s.outliers,
+            ..unit(gyro, s.accel.or(area.accel), area.mounting)
+        },
         wire: Wire {
             delay_s: s.wire.delay,
             skew: s.wire.skew,

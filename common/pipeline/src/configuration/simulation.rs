@@ -1,12 +1,10 @@
-//! What the simulator makes of the ship, of each area and of the way of the data; the defaults are those of paper 000 section 5.
+//! What the simulator makes of the ship and of the way of the data; the defaults are those of paper 000 section 5.
 
 use super::instrument::{Accel, Gyro};
-use super::{quantity, table};
-use frames::unit::{ARCMIN, ARCSEC, DEGREE, KNOT};
-use frames::{Main, Vec3};
+use super::{quantity, swing, table, unit_errors};
+use frames::unit::{ARCSEC, DEGREE, KNOT};
 use serde::Deserialize;
-use serde::de::{Deserializer, Error};
-use simulation::GaussMarkov;
+use simulation::{Swing, Turns, Wander};
 
 /// The ship and its main unit.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
@@ -26,15 +24,18 @@ pub struct Simulation {
     pub course: f64,
     /// Whether the velocity turns with the heading, or else keeps the course.
     pub velocity_follows_heading: bool,
-    /// Sway in roll.
-    #[serde(deserialize_with = "tilt")]
-    pub roll: Sway,
-    /// Sway in pitch.
-    #[serde(deserialize_with = "tilt")]
-    pub pitch: Sway,
-    /// Sway in heading.
-    #[serde(deserialize_with = "turn")]
-    pub heading: Sway,
+    /// What the sea does to the roll.
+    #[serde(deserialize_with = "swing::tilt")]
+    pub roll: Swing,
+    /// What the sea does to the pitch.
+    #[serde(deserialize_with = "swing::tilt")]
+    pub pitch: Swing,
+    /// What the sea does to the heading.
+    #[serde(deserialize_with = "swing::yaw")]
+    pub heading: Swing,
+    /// Turns of the course.
+    #[serde(deserialize_with = "swing::turns")]
+    pub turns: Option<Turns>,
     /// Errors of the main unit's attitude.
     #[serde(deserialize_with = "table::one")]
     pub ins: Ins,
@@ -44,6 +45,9 @@ pub struct Simulation {
     /// The main unit's true accelerometers where they differ from the configured grade.
     #[serde(deserialize_with = "table::optional")]
     pub accel: Option<Accel>,
+    /// What the biases of the main unit's gyros do beside their constant part.
+    #[serde(deserialize_with = "unit_errors::bias_wander")]
+    pub bias_wander: Wander,
 }
 
 impl Default for Simulation {
@@ -54,57 +58,16 @@ impl Default for Simulation {
             longitude: 126.0 * DEGREE,
             course: 45.0 * DEGREE,
             velocity_follows_heading: false,
-            roll: TILT,
-            pitch: TILT,
-            heading: TURN,
+            roll: swing::TILT,
+            pitch: swing::TILT,
+            heading: swing::YAW,
+            turns: None,
             ins: Ins::default(),
             gyro: None,
             accel: None,
+            bias_wander: Wander::default(),
         }
     }
-}
-
-/// A sinusoidal motion of one Euler angle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sway {
-    /// Amplitude, rad.
-    pub amplitude: f64,
-    /// Period, s.
-    pub period: f64,
-    /// Phase at the start, rad.
-    pub phase: f64,
-}
-
-const TILT: Sway = Sway { amplitude: 10.0 * DEGREE, period: 8.0, phase: 0.0 };
-const TURN: Sway = Sway { amplitude: 10.0 * DEGREE, period: 10.0, phase: 0.0 };
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SwayTable {
-    #[serde(default, deserialize_with = "quantity::amplitude_deg")]
-    amplitude_deg: Option<f64>,
-    #[serde(default, deserialize_with = "quantity::sway_period_s")]
-    period_s: Option<f64>,
-    #[serde(default, deserialize_with = "quantity::phase_deg")]
-    phase_deg: Option<f64>,
-}
-
-impl SwayTable {
-    fn or(self, other: Sway) -> Sway {
-        Sway {
-            amplitude: self.amplitude_deg.unwrap_or(other.amplitude),
-            period: self.period_s.unwrap_or(other.period),
-            phase: self.phase_deg.unwrap_or(other.phase),
-        }
-    }
-}
-
-fn tilt<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Sway, D::Error> {
-    table::one(deserializer).map(|table: SwayTable| table.or(TILT))
-}
-
-fn turn<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Sway, D::Error> {
-    table::one(deserializer).map(|table: SwayTable| table.or(TURN))
 }
 
 /// Errors of the attitude that the main unit's INS gives: one standard deviation each.
@@ -126,75 +89,6 @@ impl Default for Ins {
     fn default() -> Self {
         Self { level: 20.0 * ARCSEC, heading: 60.0 * ARCSEC, noise: 2.0 * ARCSEC }
     }
-}
-
-/// One area: its true installation and flexure, its true unit and the way of its data.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, default)]
-pub struct AreaSimulation {
-    /// Rotation vector of the true static deformation `C_s^m`, rad.
-    #[serde(rename = "installation_rotation_vector_arcmin", deserialize_with = "quantity::rotation_vector_arcmin")]
-    pub installation: Vec3<Main>,
-    /// The true flexure, an axis of m each.
-    #[serde(deserialize_with = "flexure")]
-    pub flexure: [GaussMarkov; 3],
-    /// How much of the flexure moves the lever arm: 1 turns it with the deck, 0 keeps it.
-    #[serde(deserialize_with = "quantity::gain")]
-    pub dynamic_lever_arm: f64,
-    /// The way from the unit to the host.
-    #[serde(deserialize_with = "table::one")]
-    pub wire: Wire,
-    /// The unit's true gyros where they differ from the configured grade.
-    #[serde(deserialize_with = "table::optional")]
-    pub gyro: Option<Gyro>,
-    /// The unit's true accelerometers where they differ from the configured grade.
-    #[serde(deserialize_with = "table::optional")]
-    pub accel: Option<Accel>,
-}
-
-impl Default for AreaSimulation {
-    fn default() -> Self {
-        let critical = |tau: f64, arcmin: f64| GaussMarkov::critical(tau, arcmin * ARCMIN);
-        Self {
-            installation: Vec3::new(10.0 * ARCMIN, 10.0 * ARCMIN, 30.0 * ARCMIN),
-            flexure: [critical(10.0, 6.0), critical(10.0, 6.0), critical(30.0, 10.0)],
-            dynamic_lever_arm: 1.0,
-            wire: Wire::default(),
-            gyro: None,
-            accel: None,
-        }
-    }
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct FlexureTable {
-    #[serde(default, deserialize_with = "quantity::tau_s")]
-    tau_s: Option<[f64; 3]>,
-    #[serde(default, deserialize_with = "quantity::mu_per_s")]
-    mu_per_s: Option<[f64; 3]>,
-    #[serde(default, deserialize_with = "quantity::b_rad_per_s")]
-    b_rad_per_s: Option<[f64; 3]>,
-    #[serde(default, deserialize_with = "quantity::sigma_arcmin")]
-    sigma_arcmin: Option<[f64; 3]>,
-}
-
-fn flexure<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[GaussMarkov; 3], D::Error> {
-    let table: FlexureTable = table::one(deserializer)?;
-    let usual = AreaSimulation::default().flexure;
-    let (mu, b) = match (table.tau_s, table.mu_per_s, table.b_rad_per_s) {
-        (None, None, None) => (usual.map(|f| f.mu), usual.map(|f| f.b)),
-        (Some(tau), None, None) => {
-            let critical = tau.map(|tau| GaussMarkov::critical(tau, 0.0));
-            (critical.map(|f| f.mu), critical.map(|f| f.b))
-        }
-        (None, Some(mu), Some(b)) => (mu, b),
-        _ => {
-            return Err(D::Error::custom("needs either `tau_s`, or `mu_per_s` and `b_rad_per_s`"));
-        }
-    };
-    let sigma = table.sigma_arcmin.unwrap_or(usual.map(|f| f.sigma));
-    Ok(std::array::from_fn(|i| GaussMarkov { mu: mu[i], b: b[i], sigma: sigma[i] }))
 }
 
 /// The way of a unit's data to the host, and its clock.
