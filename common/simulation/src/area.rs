@@ -19,6 +19,10 @@ pub struct Area {
     pub installation: Rot<Main, Sub>,
     /// How the static part drifts.
     pub quasi_static: QuasiStatic,
+    /// Which realisation of the flexure; without a number it is the area's own, which no other area has.
+    ///
+    /// Areas of one number whose flexure and sampling instants are the same bend alike, as two units on one plate do.
+    pub hull: Option<u32>,
     /// The flexure about x, y, z of m.
     pub flexure: [GaussMarkov; 3],
     /// Models that take the place of the first one, in the order of their times; angle and rate go on from where they are.
@@ -43,6 +47,7 @@ impl Default for Area {
             dynamic_lever_arm: 1.0,
             installation: Rot::exp(Vec3::new(10.0 * ARCMIN, 10.0 * ARCMIN, 30.0 * ARCMIN)),
             quasi_static: QuasiStatic::default(),
+            hull: None,
             flexure: [
                 GaussMarkov::critical(10.0, 6.0 * ARCMIN),
                 GaussMarkov::critical(10.0, 6.0 * ARCMIN),

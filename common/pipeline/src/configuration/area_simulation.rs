@@ -17,6 +17,9 @@ pub struct AreaSimulation {
     /// How the static part drifts from there.
     #[serde(deserialize_with = "flexure::quasi_static")]
     pub quasi_static: QuasiStatic,
+    /// Areas of one number bend alike; an area without one bends by itself.
+    #[serde(deserialize_with = "quantity::hull")]
+    pub hull: Option<u32>,
     /// The true flexure, an axis of m each.
     #[serde(deserialize_with = "flexure::models")]
     pub flexure: [GaussMarkov; 3],
@@ -57,6 +60,7 @@ impl Default for AreaSimulation {
         Self {
             installation: Vec3::new(10.0 * ARCMIN, 10.0 * ARCMIN, 30.0 * ARCMIN),
             quasi_static: usual.quasi_static,
+            hull: None,
             flexure: usual.flexure,
             flexure_changes: Vec::new(),
             starts_at_rest: false,

@@ -189,6 +189,14 @@ pub(super) fn tones<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option
     }
 }
 
+/// The number of a hull, beyond those that areas have by themselves.
+pub(super) fn hull<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<u32>, D::Error> {
+    match u32::deserialize(deserializer)? {
+        n @ 1000..=9999 => Ok(Some(n)),
+        _ => Err(D::Error::custom("must be within 1000 to 9999")),
+    }
+}
+
 /// The number of flexure models in the identifier's dictionary.
 pub(super) fn dictionary<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> {
     match usize::deserialize(deserializer)? {

@@ -55,6 +55,7 @@ fn area(area: &Area) -> simulation::Area {
         dynamic_lever_arm: s.dynamic_lever_arm,
         installation: Rot::exp(s.installation),
         quasi_static: s.quasi_static,
+        hull: s.hull,
         flexure: s.flexure,
         flexure_changes: s.flexure_changes.clone(),
         starts_at_rest: s.starts_at_rest,
