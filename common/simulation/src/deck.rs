@@ -52,7 +52,13 @@ impl Deck {
         let sampling = Sampling::new(rate_hz * (1.0 + area.wire.rate_error), area.wire.phase_s);
         let next = sampling.last_by(begin_ns);
         Self {
-            hull: Hull::new(area, u64::from(area.hull.unwrap_or(index)), seed, sea, begin_ns.min(sampling.instant(next))),
+            hull: Hull::new(
+                area,
+                u64::from(area.hull.unwrap_or(index)),
+                seed,
+                sea,
+                begin_ns.min(sampling.instant(next)),
+            ),
             imu: Imu::new(&area.unit, seed, u64::from(index) + 1),
             line: Line::new(&area.wire, Source::new(seed, Purpose::Wire, u64::from(index))),
             sampling,
