@@ -79,11 +79,27 @@ impl Configuration {
     pub fn read(path: &Path) -> Result<Self, ConfigurationError> {
         let text = std::fs::read_to_string(path)
             .map_err(|reason| ConfigurationError::Unreadable { path: path.to_path_buf(), reason })?;
-        let document = Document::parse(path, &text)?;
-        let mut configuration: Self = toml::from_str(&text).map_err(|error| document.explain(&error))?;
+        Self::parse(path, &text)
+    }
+
+    /// Checks the text of a configuration, and that its recordings exist; `path` is what errors name and where the paths of
+    /// recordings start from.
+    ///
+    /// # Errors
+    /// Those of [`Self::read`], but for the file itself.
+    pub fn parse(path: &Path, text: &str) -> Result<Self, ConfigurationError> {
+        let document = Document::parse(path, text)?;
+        let mut configuration: Self = toml::from_str(text).map_err(|error| document.explain(&error))?;
         configuration.path = path.to_path_buf();
         rules::apply(&mut configuration, &document)?;
         Ok(configuration)
+    }
+
+    /// A copy with some values changed, which are not checked again.
+    pub fn with(&self, change: impl FnOnce(&mut Self)) -> Self {
+        let mut configuration = self.clone();
+        change(&mut configuration);
+        configuration
     }
 
     /// The nominal time from one sample to the next, ns.
