@@ -4,6 +4,7 @@ use clap::{Args, Parser, Subcommand};
 use pipeline::configuration::Configuration;
 use runtime::{Context, POISONED_EXIT_CODE, TransportError};
 use std::error::Error;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
@@ -46,6 +47,29 @@ enum Command {
     },
     /// Check a configuration and the head of each recording
     Check { configuration: PathBuf },
+    /// Repeat the papers' experiments and print our figures beside theirs and beside the statistical bound
+    Reproduce {
+        /// Name of a paper's experiment, or all; an unknown name is answered with the known ones
+        #[arg(default_value = "all")]
+        experiment: reproduce::Selection,
+        /// Trials of every study, instead of its own number
+        #[arg(long, value_name = "N")]
+        trials: Option<NonZeroUsize>,
+        #[arg(long, value_name = "S", default_value_t = 1)]
+        seed: u64,
+        /// Few trials: a look, not a result
+        #[arg(long)]
+        quick: bool,
+        /// Write the rows as JSON
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+        /// Write a page with tables and figures
+        #[arg(long, value_name = "DIR")]
+        report: Option<PathBuf>,
+        /// Threads at work, by default one a core; the results are the same
+        #[arg(long, value_name = "N")]
+        threads: Option<NonZeroUsize>,
+    },
     /// Stage: simulated units (started by launch)
     Simulate(StageArgs),
     /// Stage: recorded units (started by launch)
@@ -97,6 +121,10 @@ fn main() -> ExitCode {
         }
         Command::Process { configuration, duration, out } => process(configuration, duration, &out),
         Command::Check { configuration } => check(configuration),
+        Command::Reproduce { experiment: selection, trials, seed, quick, json, report, threads } => {
+            let plan = reproduce::Plan { trials, seed, quick };
+            reproduce(&reproduce::Options { selection, plan, json, report, threads })
+        }
         Command::Simulate(args) => stage(&args, simulate::run),
         Command::Replay(args) => stage(&args, replay::run),
         Command::Synchronise(args) => of_area(&args, synchronise::run),
@@ -174,6 +202,11 @@ fn check_recordings(path: &std::path::Path) -> Result<(), check::CheckError> {
 
 fn check(path: PathBuf) -> Outcome {
     println!("{}", check::run(&path)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn reproduce(options: &reproduce::Options) -> Outcome {
+    print!("{}", reproduce::run(options)?);
     Ok(ExitCode::SUCCESS)
 }
 

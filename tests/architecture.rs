@@ -69,13 +69,23 @@ fn tree(name: &str) -> BTreeSet<String> {
 #[test]
 fn the_layers_import_downwards_only() {
     let workspace = Workspace::read();
-    let allowed: [(&str, &[&str]); 6] = [
+    let allowed: [(&str, &[&str]); 7] = [
         ("deckflex-frames", &[]),
         ("deckflex-messages", &["deckflex-frames"]),
         ("deckflex-estimation", &["deckflex-frames", "deckflex-messages"]),
         ("deckflex-simulation", &["deckflex-frames", "deckflex-messages"]),
         ("deckflex-pipeline", &["deckflex-frames", "deckflex-messages", "deckflex-estimation", "deckflex-simulation"]),
         ("deckflex-runtime", &["deckflex-frames", "deckflex-messages"]),
+        (
+            "deckflex-experiments",
+            &[
+                "deckflex-frames",
+                "deckflex-messages",
+                "deckflex-estimation",
+                "deckflex-simulation",
+                "deckflex-pipeline",
+            ],
+        ),
     ];
     let known: BTreeSet<&str> = allowed.iter().map(|(name, _)| *name).collect();
     assert_eq!(workspace.within("common"), known, "a new crate needs its rule here");
@@ -90,11 +100,12 @@ fn the_layers_import_downwards_only() {
 #[test]
 fn what_must_not_meet_does_not_meet() {
     let shell = ["iceoryx2", "clap", "libc", "signal-hook", "crossbeam", "deckflex-runtime", "deckflex-pipeline"];
-    let forbidden: [(&str, &[&str]); 4] = [
+    let forbidden: [(&str, &[&str]); 5] = [
         ("deckflex-estimation", &[&shell[..], &["deckflex-simulation", "rand"]].concat()),
         ("deckflex-simulation", &[&shell[..], &["deckflex-estimation"]].concat()),
         ("deckflex-pipeline", &["iceoryx2", "clap", "signal-hook", "crossbeam", "deckflex-runtime"]),
         ("deckflex-runtime", &["clap", "deckflex-pipeline", "deckflex-estimation", "deckflex-simulation"]),
+        ("deckflex-experiments", &["iceoryx2", "clap", "signal-hook", "libc", "deckflex-runtime", "plotters", "maud"]),
     ];
     for (name, forbidden) in forbidden {
         let tree = tree(name);
@@ -126,6 +137,17 @@ fn the_transport_and_the_command_line_stand_in_one_place_each() {
     assert_eq!(workspace.importers("clap"), ["deckflex"]);
 }
 
+/// No stage of a live run is linked with what draws and tabulates.
+#[test]
+fn the_experiments_stand_apart_from_the_stages() {
+    let workspace = Workspace::read();
+    assert_eq!(workspace.importers("deckflex-experiments"), ["deckflex-reproduce"]);
+    assert_eq!(workspace.importers("rayon"), ["deckflex-experiments", "deckflex-reproduce"]);
+    for library in ["plotters", "maud", "comfy-table"] {
+        assert_eq!(workspace.importers(library), ["deckflex-reproduce"]);
+    }
+}
+
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).unwrap().flatten().map(|entry| entry.path()) {
@@ -142,7 +164,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 #[test]
 fn only_the_shell_has_clocks_and_threads() {
     let mut lines = 0;
-    for name in ["frames", "messages", "estimation", "simulation", "pipeline"] {
+    for name in ["frames", "messages", "estimation", "simulation", "pipeline", "experiments"] {
         for file in sources(&root().join("common").join(name).join("src")) {
             for (number, line) in fs::read_to_string(&file).unwrap().lines().enumerate() {
                 let code = line.split("//").next().unwrap();

@@ -1,0 +1,49 @@
+//! The configurations of the experiments, embedded.
+
+use crate::Fault;
+use pipeline::configuration::Configuration;
+use std::path::Path;
+
+macro_rules! presets {
+    ($($name:literal: $path:literal),* $(,)?) => {
+        const PRESETS: &[(&str, &str, &str)] =
+            &[$(($name, $path, include_str!(concat!("../../../", $path)))),*];
+    };
+}
+
+presets! {
+    "demo": "config/demo.toml",
+}
+
+/// Name and text of each.
+pub fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
+    PRESETS.iter().map(|&(name, _, text)| (name, text))
+}
+
+/// The preset of a name, with the seed of a trial.
+///
+/// # Errors
+/// There is no such preset, or it is not sound.
+pub fn configuration(name: &str, seed: u64) -> Result<Configuration, Fault> {
+    let (_, path, text) =
+        PRESETS.iter().find(|preset| preset.0 == name).ok_or_else(|| Fault::NoSuchPreset(name.to_owned()))?;
+    Ok(Configuration::parse(Path::new(path), text)?.with(|c| c.run.seed = seed))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_preset_is_sound_and_every_file_is_a_preset() {
+        for (name, _) in all() {
+            configuration(name, 1).unwrap_or_else(|fault| panic!("{name}: {fault}"));
+        }
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config/papers");
+        for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+            let path = format!("config/papers/{}", entry.file_name().to_string_lossy());
+            assert!(PRESETS.iter().any(|preset| preset.1 == path), "{path} is no preset");
+        }
+        assert!(matches!(configuration("nowhere", 1), Err(Fault::NoSuchPreset(_))));
+    }
+}

@@ -1,0 +1,36 @@
+use experiments::{EXPERIMENTS, Experiment};
+use std::str::FromStr;
+
+/// One experiment, or all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Selection(Option<&'static str>);
+
+/// There is no experiment of this name.
+#[derive(Debug, thiserror::Error)]
+#[error("there is no experiment \"{0}\"; known are {known} and all", known = names().join(", "))]
+pub struct UnknownExperiment(String);
+
+fn names() -> Vec<&'static str> {
+    EXPERIMENTS.iter().map(|experiment| experiment.name).collect()
+}
+
+impl Selection {
+    /// Those that are selected, in the order of the output.
+    pub fn experiments(self) -> impl Iterator<Item = &'static Experiment> + Clone {
+        EXPERIMENTS.iter().filter(move |experiment| self.0.is_none_or(|name| name == experiment.name))
+    }
+}
+
+impl FromStr for Selection {
+    type Err = UnknownExperiment;
+
+    fn from_str(text: &str) -> Result<Self, UnknownExperiment> {
+        match text {
+            "all" => Ok(Self(None)),
+            _ => match names().into_iter().find(|name| *name == text) {
+                Some(name) => Ok(Self(Some(name))),
+                None => Err(UnknownExperiment(text.to_owned())),
+            },
+        }
+    }
+}
