@@ -6,14 +6,22 @@ mod identify_scene;
 use estimation::Identifier;
 use estimation::identify::chain::{Anchor, Chain};
 use estimation::identify::window::{Point, Window};
-use estimation::identify::{Fixed, Rvm, Settings};
+use estimation::identify::{Fixed, Method, Settings, Windowed};
 use frames::unit;
 use identify_scene::{Run, Scene, critical};
 use messages::{Flags, FlexureParams, ImuPair, Solution, Stamps};
 use nalgebra::Matrix3;
 
-const SETTINGS: Settings =
-    Settings { window_s: 30.0, period_s: 10.0, lead_s: 0.5, minimum_s: 8.0, dictionary: 1, area: 3 };
+const SETTINGS: Settings = Settings {
+    window_s: 30.0,
+    period_s: 10.0,
+    lead_s: 0.5,
+    minimum_s: 8.0,
+    dictionary: 1,
+    method: Method::Rvm,
+    safety: true,
+    area: 3,
+};
 
 fn scene(interval_s: f64, seed: u64) -> Scene {
     Scene { interval_s, ..Scene::new(critical(), seed) }
@@ -21,7 +29,7 @@ fn scene(interval_s: f64, seed: u64) -> Scene {
 
 /// Runs a scene for a time and changes what `spoil` changes.
 fn sets(
-    rvm: &mut Rvm,
+    rvm: &mut Windowed,
     run: &mut Run,
     length_s: f64,
     mut spoil: impl FnMut(&mut ImuPair, &mut Solution) -> bool,
@@ -44,7 +52,7 @@ fn times(sets: &[FlexureParams]) -> Vec<f64> {
 
 #[test]
 fn fires_by_data_time_and_says_what_it_used() {
-    let mut rvm = Rvm::new(SETTINGS);
+    let mut rvm = Windowed::new(SETTINGS);
     let found = sets(&mut rvm, &mut scene(0.01, 1).run(), 50.0, |pair, _| {
         pair.header.stamps.pair_ns = 99;
         true
@@ -65,7 +73,7 @@ fn fires_by_data_time_and_says_what_it_used() {
 
 #[test]
 fn the_same_data_give_the_same_bits() {
-    let run = || sets(&mut Rvm::new(SETTINGS), &mut scene(0.02, 4).run(), 30.0, |_, _| true);
+    let run = || sets(&mut Windowed::new(SETTINGS), &mut scene(0.02, 4).run(), 30.0, |_, _| true);
     assert_eq!(run(), run());
 }
 
@@ -94,7 +102,7 @@ fn a_gap_or_a_new_epoch_or_an_invalid_solution_starts_anew() {
         (|pair, _| pair.attitude_s = [f64::NAN; 4], 15.5),
     ];
     for (number, (spoil, end)) in spoils.into_iter().enumerate() {
-        let mut rvm = Rvm::new(SETTINGS);
+        let mut rvm = Windowed::new(SETTINGS);
         let found = sets(&mut rvm, &mut scene(0.02, 5).run(), 24.0, |pair, solution| {
             if within(pair, 15.0, end) {
                 spoil(pair, solution);
@@ -105,7 +113,7 @@ fn a_gap_or_a_new_epoch_or_an_invalid_solution_starts_anew() {
         assert_eq!(found.len(), 2, "{number}");
         assert!((times(&found)[1] - end - 8.0).abs() < 0.03, "{number} {:?}", times(&found));
     }
-    let mut rvm = Rvm::new(SETTINGS);
+    let mut rvm = Windowed::new(SETTINGS);
     sets(&mut rvm, &mut scene(0.02, 5).run(), 24.0, |pair, solution| {
         if unit::seconds(pair.header.time_ns) > 15.0 {
             (pair.epoch, solution.epoch) = (750, 750);
@@ -117,10 +125,10 @@ fn a_gap_or_a_new_epoch_or_an_invalid_solution_starts_anew() {
 
 #[test]
 fn lost_pairs_lose_only_time() {
-    let mut rvm = Rvm::new(SETTINGS);
+    let mut rvm = Windowed::new(SETTINGS);
     let found = sets(&mut rvm, &mut scene(0.01, 6).run(), 40.0, |pair, _| pair.header.sequence % 100 > 20);
     assert_eq!((rvm.restarted_windows(), found.len()), (0, 4));
-    let whole = sets(&mut Rvm::new(SETTINGS), &mut scene(0.01, 6).run(), 40.0, |_, _| true);
+    let whole = sets(&mut Windowed::new(SETTINGS), &mut scene(0.01, 6).run(), 40.0, |_, _| true);
     for (some, all) in found.iter().zip(&whole).skip(2) {
         for axis in 0..3 {
             let ratio = some.sigma[axis] / all.sigma[axis];
@@ -139,7 +147,7 @@ fn nothing_to_identify_gives_no_set() {
         |_, solution| solution.constant = [f64::NAN; 4],
     ];
     for spoil in spoils {
-        let found = sets(&mut Rvm::new(SETTINGS), &mut scene(0.05, 7).run(), 20.0, |pair, solution| {
+        let found = sets(&mut Windowed::new(SETTINGS), &mut scene(0.05, 7).run(), 20.0, |pair, solution| {
             spoil(pair, solution);
             true
         });
@@ -203,7 +211,7 @@ fn early_on_a_worse_constant_does_not_replace_a_better_one() {
     let settings = Settings { window_s: 60.0, period_s: 20.0, minimum_s: 20.0, ..SETTINGS };
     for seed in 0..3 {
         let guarded = |later: [f64; 3]| {
-            let (mut rvm, mut run) = (Rvm::new(settings), scene(0.1, seed).run());
+            let (mut rvm, mut run) = (Windowed::new(settings), scene(0.1, seed).run());
             let mut found = sets(&mut rvm, &mut run, 30.0, |_, _| true);
             run.mislead(later);
             found.extend(sets(&mut rvm, &mut run, 45.0, |_, _| true));

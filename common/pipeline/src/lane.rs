@@ -7,7 +7,7 @@ use estimation::align::Registrar;
 use estimation::estimator::{self, MakeRegister, Matched, MatchedSettings, So3Estimator};
 use estimation::evaluate::{Deviations, Evaluate};
 use estimation::filter::Filter;
-use estimation::identify::{self, Fixed, Rvm};
+use estimation::identify::{self, Fixed, Windowed};
 use estimation::matching::rate::{self, RateMatching};
 use estimation::matching::{self, Model, so3};
 use estimation::synchronise::{self, Synchroniser, Unit};
@@ -91,7 +91,7 @@ fn settings(configuration: &Configuration, area: usize) -> estimator::Settings {
             .map(|told| estimator::Installation { rotation: told.rotation, sigma: told.sigma }),
         flexure: match area.identifier.method {
             IdentifierMethod::Fixed(flexure) => Some(flexure),
-            IdentifierMethod::Rvm => None,
+            IdentifierMethod::Learnt(_) => None,
         },
     }
 }
@@ -100,12 +100,14 @@ fn settings(configuration: &Configuration, area: usize) -> estimator::Settings {
 pub fn identifier(configuration: &Configuration, area: usize) -> Box<dyn Identifier + Send> {
     let told = &configuration.areas[area].identifier;
     match told.method {
-        IdentifierMethod::Rvm => Box::new(Rvm::new(identify::Settings {
+        IdentifierMethod::Learnt(method) => Box::new(Windowed::new(identify::Settings {
             window_s: told.window_s,
             period_s: told.period_s,
             lead_s: told.lead_s,
             minimum_s: told.minimum_s,
             dictionary: told.dictionary,
+            method,
+            safety: told.safety,
             area: area as u32,
         })),
         IdentifierMethod::Fixed(_) => Box::new(Fixed),

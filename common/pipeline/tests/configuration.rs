@@ -1,6 +1,7 @@
 //! Configurations: what is read, in which units, and what each mistake is told.
 
 use estimation::flexure::Flexure;
+use estimation::identify::Method;
 use frames::unit::{ARCMIN, ARCSEC, DEG_PER_H, DEG_PER_SQRT_H, DEGREE, KNOT, MICRO_G, PPM, STANDARD_GRAVITY};
 use frames::{Case, Main, Rot, Sub, Vec3};
 use pipeline::configuration::{Configuration, EstimatorSettings, IdentifierMethod, SchedulingChoice, Source};
@@ -79,7 +80,7 @@ fn everything_but_the_required_keys_has_a_default() {
     assert!(close(static_rate_noise, 1e-4 * ARCSEC * ARCSEC));
     let i = area.identifier;
     assert_eq!((i.window_s, i.period_s, i.lead_s, i.minimum_s, i.dictionary), (300.0, 10.0, 1.0, 10.0, 1));
-    assert_eq!(i.method, IdentifierMethod::Rvm);
+    assert_eq!((i.method, i.safety), (IdentifierMethod::Learnt(Method::Rvm), true));
 }
 
 #[test]
@@ -311,7 +312,9 @@ fn a_wrong_type_is_told_with_the_right_one() {
     assert_eq!(message_with("[run]\nscheduling = 1"), "ship.toml:10: run.scheduling = 1: expected a string");
     assert_eq!(
         message_with("[area.identifier]\nmethod = \"svr\""),
-        "ship.toml:10: area[0].identifier.method = \"svr\": must be one of \"rvm\", \"fixed\""
+        "ship.toml:10: area[0].identifier.method = \"svr\": must be one of \"rvm\", \"rvm_gaussian\", \"support_vector\", \
+         \"whale\", \"particle_swarm\", \"tufts_kumaresan\", \"tufts_kumaresan_printed\", \"yule_walker\", \
+         \"matrix_pencil\", \"whittle\", \"fixed\""
     );
     assert_eq!(
         message_with("[area.estimator]\nmatching = \"ekf\""),
@@ -465,4 +468,21 @@ proptest! {
             prop_assert!(error.to_string().starts_with(&path.display().to_string()));
         }
     }
+}
+
+#[test]
+fn every_method_of_identification_can_be_told() {
+    for method in Method::ALL {
+        for safety in [true, false] {
+            let told = format!("[area.identifier]\nmethod = \"{}\"\nsafety = {safety}\n", method.name());
+            let identifier = good(&format!("{MINIMAL}{told}")).areas[0].identifier;
+            assert_eq!((identifier.method, identifier.safety), (IdentifierMethod::Learnt(method), safety));
+        }
+    }
+    let wrong = message_with("[area.identifier]\nmethod = \"tufts_kumaresen\"");
+    assert!(wrong.contains("method") && wrong.contains("tufts_kumaresen"), "{wrong}");
+    assert!(wrong.ends_with("did you mean `tufts_kumaresan`?"), "{wrong}");
+    let flexure = "flexure = { mu_per_s = [1, 1, 1], b_rad_per_s = [1, 1, 1], sigma_arcsec = [1, 1, 1] }";
+    let wrong = message_with(&format!("[area.identifier]\nmethod = \"whittle\"\n{flexure}"));
+    assert!(wrong.contains("not with \"whittle\""), "{wrong}");
 }

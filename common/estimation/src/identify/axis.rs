@@ -1,11 +1,14 @@
-//! One axis: from rates to the parameters of its flexure.
+//! One axis by the relevance vector machine with damped sinusoids: from rates to the parameters of its flexure.
+//!
+//! Source: paper 000 section 3.2 (eq 25-33); the corrections stand in [`super::relevance`], [`super::dictionary`] and
+//! [`super::refinement`]. Lag 0 does not enter.
 
 use super::autocovariance::{Autocovariance, lags};
 use super::dictionary::{Atom, Dictionary};
 use super::refinement::{Refined, coarse, lines, neutral, refine};
 use super::relevance::{Limits, Relevance, solve};
 use crate::flexure::Flexure;
-use nalgebra::DVector;
+use nalgebra::{DVector, Matrix3};
 
 /// What an axis's window says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,6 +23,34 @@ pub struct Identified {
     pub ln_sigma_sd: f64,
     /// Standard deviation of the logarithm of the density `Q`.
     pub ln_density_sd: f64,
+}
+
+impl Identified {
+    /// With the standard deviations of a covariance of `ln mu`, `ln b`, `ln Q`, but at least what sampling over the time `T` leaves:
+    /// `1/sqrt(mu T)` of `ln mu`, and `2/sqrt(b T)` of `ln b` at critical damping and above (less where it oscillates, by
+    /// `sqrt(mu/b)`), each with the prior's information added. The floor of `ln b` is twice what the bound `2/sqrt(b T)` of `b^2`
+    /// says: the likelihood is skew towards slow models, and with the bound itself the errors were measured to be three times the
+    /// standard deviation. `None` if a number is not positive and finite.
+    pub fn new(flexure: Flexure, covariance: &Matrix3<f64>, length_s: f64) -> Option<Self> {
+        let Flexure { mu, b, sigma } = flexure;
+        let mu_floor = 1.0 / (mu * length_s + 1.0);
+        let b_floor = 1.0 / (b * length_s / (4.0 * (mu / b).min(1.0)) + 1.0);
+        let result = Self {
+            flexure,
+            ln_mu_sd: covariance[(0, 0)].max(mu_floor).sqrt(),
+            ln_b_sd: covariance[(1, 1)].max(b_floor).sqrt(),
+            ln_sigma_sd: sigma_variance(covariance).max(mu_floor / 4.0 + b_floor).sqrt(),
+            ln_density_sd: covariance[(2, 2)].sqrt(),
+        };
+        let numbers = [mu, b, sigma, result.ln_mu_sd, result.ln_b_sd, result.ln_sigma_sd, result.ln_density_sd];
+        numbers.iter().all(|value| value.is_finite() && *value > 0.0).then_some(result)
+    }
+}
+
+/// Variance of `ln sigma = (ln Q - ln 4 - ln mu - 2 ln b) / 2` from the covariance of `ln mu`, `ln b`, `ln Q`.
+pub(super) fn sigma_variance(covariance: &Matrix3<f64>) -> f64 {
+    let row = nalgebra::RowVector3::new(-0.5, -1.0, 0.5);
+    (row * covariance * row.transpose())[0]
 }
 
 /// The analysis of windows of one length: the lags and the dictionary are the same for all axes.
@@ -69,7 +100,7 @@ impl Analysis {
         let again = (lines != set).then(|| refine(&data, &lines, trial.flexure, FINAL)).flatten();
         let same = refine(&data, &set, trial.flexure, FINAL);
         let refined = [again, same].into_iter().flatten().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
-        identified(&refined, self.points as f64 * self.step_s)
+        Identified::new(refined.flexure, &refined.covariance, self.points as f64 * self.step_s)
     }
 
     /// The part of the autocovariance that the damped atoms make up.
@@ -88,27 +119,4 @@ impl Analysis {
         let most = MOST_LINES.min((self.points as f64 * self.step_s / SECONDS_PER_LINE) as usize);
         lines(data, model, &self.dictionary.lines(), most)
     }
-}
-
-/// Standard deviations: those of the refinement's curvature, but at least what sampling over the time `T` leaves: `1/sqrt(mu T)`
-/// of `ln mu`, and `2/sqrt(b T)` of `ln b` at critical damping and above (less where it oscillates, by `sqrt(mu/b)`), each with
-/// the prior's information added. The floor of `ln b` is twice what the bound `2/sqrt(b T)` of `b^2` says: the likelihood is
-/// skew towards slow models, and with the bound itself the errors were measured to be three times the standard deviation.
-fn identified(refined: &Refined, length_s: f64) -> Option<Identified> {
-    let Flexure { mu, b, sigma } = refined.flexure;
-    let covariance = &refined.covariance;
-    let mu_floor = 1.0 / (mu * length_s + 1.0);
-    let b_floor = 1.0 / (b * length_s / (4.0 * (mu / b).min(1.0)) + 1.0);
-    // ln sigma = (ln Q - ln 4 - ln mu - 2 ln b) / 2
-    let row = nalgebra::RowVector3::new(-0.5, -1.0, 0.5);
-    let sigma_variance = (row * covariance * row.transpose())[0];
-    let result = Identified {
-        flexure: refined.flexure,
-        ln_mu_sd: covariance[(0, 0)].max(mu_floor).sqrt(),
-        ln_b_sd: covariance[(1, 1)].max(b_floor).sqrt(),
-        ln_sigma_sd: sigma_variance.max(mu_floor / 4.0 + b_floor).sqrt(),
-        ln_density_sd: covariance[(2, 2)].sqrt(),
-    };
-    let numbers = [mu, b, sigma, result.ln_mu_sd, result.ln_b_sd, result.ln_sigma_sd, result.ln_density_sd];
-    numbers.iter().all(|value| value.is_finite() && *value > 0.0).then_some(result)
 }

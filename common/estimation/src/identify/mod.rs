@@ -1,34 +1,61 @@
-//! Identification of the flexure model by a relevance vector machine.
+//! Identification of the flexure model from a window of data: the methods of papers 000 and 003, and rivals.
 //!
-//! Source: paper 000 section 3 (eq 16-33), corrected: the data are increments of the relative attitude, rebuilt over the whole
-//! window with the latest constant, so that the product of ship's rate and flexure that eq 16 drops is not in them.
+//! The data are those of paper 000 section 3 (eq 16-24), corrected: increments of the relative attitude, rebuilt over the whole
+//! window with the latest constant, so that the product of ship's rate and flexure that eq 16 drops is not in them. Paper 003
+//! identifies the angle itself; [`Series`] is either.
 //!
 //! | step | file |
 //! |---|---|
 //! | points at 10 Hz, gaps, when to fire | [`window`] |
 //! | relative rate of the window | [`chain`] |
-//! | its autocovariance at some lags | [`autocovariance`] |
-//! | damped and undamped sinusoids | [`dictionary`] |
-//! | which of them are in the autocovariance | [`relevance`] |
-//! | the three tied parameters of the model | [`refinement`] |
-//! | one axis from rates to parameters | [`axis`] |
+//! | one axis by a method | [`method`] |
 //! | what a filter may safely use | [`safety`] |
-//! | all together as an [`Identifier`](crate::Identifier) | [`Rvm`] |
+//! | all together as an [`Identifier`](crate::Identifier) | [`Windowed`] |
+//! | what no method can beat | [`bound`] |
+//!
+//! | method | files |
+//! |---|---|
+//! | relevance vector machine, damped sinusoids (000) | [`axis`], [`autocovariance`], [`dictionary`], [`relevance`], [`refinement`], [`expectation`] |
+//! | relevance vector machine, Gaussian kernel (000) | [`gaussian`], [`tied`] |
+//! | support vector regression (000's rival) | [`support_vector`], [`tied`] |
+//! | whale and particle swarm optimisation (000's rivals) | [`whale`], [`particle_swarm`], [`swarm`], [`tied`] |
+//! | Tufts-Kumaresan (003), Yule-Walker, matrix pencil | [`tufts_kumaresan`], [`yule_walker`], [`matrix_pencil`], [`poles`] |
+//! | Whittle's maximum likelihood | [`whittle`], [`periodogram`] |
+//! | none | [`Fixed`] |
 
 pub mod autocovariance;
 pub mod axis;
+pub mod bound;
 pub mod chain;
 pub mod dictionary;
 pub mod expectation;
 mod fixed;
+pub mod gaussian;
+pub mod lagged;
+pub mod matrix_pencil;
+pub mod method;
+pub mod particle_swarm;
+pub mod periodogram;
+pub mod poles;
 pub mod refinement;
 pub mod relevance;
-mod rvm;
 pub mod safety;
+pub mod series;
+pub mod support_vector;
+pub mod swarm;
+pub mod tied;
+pub mod tufts_kumaresan;
+pub mod whale;
+pub mod whittle;
 pub mod window;
+mod windowed;
+pub mod yule_walker;
 
+pub use axis::Identified;
 pub use fixed::Fixed;
-pub use rvm::Rvm;
+pub use method::{Method, identify_axis};
+pub use series::{Kind, Series};
+pub use windowed::Windowed;
 
 /// When an identifier works and on what.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,12 +70,25 @@ pub struct Settings {
     pub minimum_s: f64,
     /// Multiplies the number of atoms of the dictionary, and about so the solver's time; 1 is enough.
     pub dictionary: usize,
+    /// How an axis is identified.
+    pub method: Method,
+    /// Whether the safety rule is applied to what the method finds; without it a filter gets the method's own numbers.
+    pub safety: bool,
     /// Index of the area, copied into the parameters.
     pub area: u32,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { window_s: 600.0, period_s: 60.0, lead_s: 1.0, minimum_s: 30.0, dictionary: 1, area: 0 }
+        Self {
+            window_s: 600.0,
+            period_s: 60.0,
+            lead_s: 1.0,
+            minimum_s: 30.0,
+            dictionary: 1,
+            method: Method::Rvm,
+            safety: true,
+            area: 0,
+        }
     }
 }

@@ -12,13 +12,13 @@ use crate::flexure::Flexure;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix3, Vector3};
 
 /// Range of the damping, 1/s.
-const DAMPING: (f64, f64) = (0.02, 3.0);
+pub const DAMPING: (f64, f64) = (0.02, 3.0);
 /// Range of the natural frequency, rad/s.
-const FREQUENCY: (f64, f64) = (0.02, 6.0);
+pub const FREQUENCY: (f64, f64) = (0.02, 6.0);
 /// Medians of the priors of damping and natural frequency.
-const MEDIANS: (f64, f64) = (0.15, 0.6);
+pub(super) const MEDIANS: (f64, f64) = (0.15, 0.6);
 /// Standard deviation of the priors' logarithms.
-const PRIOR_SD: f64 = 1.0;
+pub(super) const PRIOR_SD: f64 = 1.0;
 /// Standard deviation of what the model leaves out, as a share of lag 0; it also bounds the condition of the weights.
 const MISFIT: f64 = 1e-3;
 /// The model is followed until it has decayed to this share, or to `FARTHEST` steps.

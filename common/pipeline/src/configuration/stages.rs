@@ -2,6 +2,7 @@
 
 use super::{quantity, table};
 use estimation::flexure::Flexure;
+use estimation::identify;
 use frames::unit;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
@@ -118,11 +119,10 @@ impl Default for EstimatorSettings {
 }
 
 /// The methods of the slow stage.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum IdentifierMethod {
-    /// Relevance vector machine.
-    #[default]
-    Rvm,
+    /// The model is learnt from a window of data by this method.
+    Learnt(identify::Method),
     /// Nothing is learnt: this model, an axis of m each.
     Fixed([Flexure; 3]),
 }
@@ -142,17 +142,20 @@ pub struct IdentifierSettings {
     pub minimum_s: f64,
     /// Size factor of the dictionary of models, 1 to 100.
     pub dictionary: usize,
+    /// Whether what is learnt is made safe for a filter, or used as the method gives it.
+    pub safety: bool,
 }
 
 impl Default for IdentifierSettings {
     fn default() -> Self {
         Self {
-            method: IdentifierMethod::Rvm,
+            method: IdentifierMethod::Learnt(identify::Method::Rvm),
             window_s: 300.0,
             period_s: 10.0,
             lead_s: 1.0,
             minimum_s: 10.0,
             dictionary: 1,
+            safety: true,
         }
     }
 }
@@ -161,7 +164,35 @@ impl Default for IdentifierSettings {
 #[serde(rename_all = "snake_case")]
 enum Method {
     Rvm,
+    RvmGaussian,
+    SupportVector,
+    Whale,
+    ParticleSwarm,
+    TuftsKumaresan,
+    TuftsKumaresanPrinted,
+    YuleWalker,
+    MatrixPencil,
+    Whittle,
     Fixed,
+}
+
+impl Method {
+    /// `None` where nothing is learnt.
+    fn learnt(&self) -> Option<identify::Method> {
+        Some(match self {
+            Self::Rvm => identify::Method::Rvm,
+            Self::RvmGaussian => identify::Method::RvmGaussian,
+            Self::SupportVector => identify::Method::SupportVector,
+            Self::Whale => identify::Method::Whale,
+            Self::ParticleSwarm => identify::Method::ParticleSwarm,
+            Self::TuftsKumaresan => identify::Method::TuftsKumaresan,
+            Self::TuftsKumaresanPrinted => identify::Method::TuftsKumaresanPrinted,
+            Self::YuleWalker => identify::Method::YuleWalker,
+            Self::MatrixPencil => identify::Method::MatrixPencil,
+            Self::Whittle => identify::Method::Whittle,
+            Self::Fixed => return None,
+        })
+    }
 }
 
 #[derive(Deserialize)]
@@ -179,14 +210,15 @@ struct IdentifierTable {
     minimum_s: Option<f64>,
     #[serde(deserialize_with = "quantity::dictionary")]
     dictionary: usize,
+    safety: bool,
     #[serde(deserialize_with = "table::optional")]
     flexure: Option<FlexureTable>,
 }
 
 impl Default for IdentifierTable {
     fn default() -> Self {
-        let IdentifierSettings { window_s, period_s, lead_s, dictionary, .. } = Default::default();
-        Self { method: Method::Rvm, window_s, period_s, lead_s, minimum_s: None, dictionary, flexure: None }
+        let IdentifierSettings { window_s, period_s, lead_s, dictionary, safety, .. } = Default::default();
+        Self { method: Method::Rvm, window_s, period_s, lead_s, minimum_s: None, dictionary, safety, flexure: None }
     }
 }
 
@@ -204,21 +236,23 @@ struct FlexureTable {
 /// Joins method and flexure.
 pub(super) fn identifier<'de, D: Deserializer<'de>>(deserializer: D) -> Result<IdentifierSettings, D::Error> {
     let table: IdentifierTable = table::one(deserializer)?;
-    let method = match (table.method, table.flexure) {
-        (Method::Rvm, None) => IdentifierMethod::Rvm,
-        (Method::Rvm, Some(_)) => {
-            return Err(D::Error::custom("the key `flexure` goes with method \"fixed\" only, not with \"rvm\""));
+    let method = match (table.method.learnt(), table.flexure) {
+        (Some(method), None) => IdentifierMethod::Learnt(method),
+        (Some(method), Some(_)) => {
+            let name = method.name();
+            let message = format!("the key `flexure` goes with method \"fixed\" only, not with \"{name}\"");
+            return Err(D::Error::custom(message));
         }
-        (Method::Fixed, None) => return Err(D::Error::custom("method \"fixed\" needs the key `flexure`")),
-        (Method::Fixed, Some(f)) => IdentifierMethod::Fixed(std::array::from_fn(|i| Flexure {
+        (None, None) => return Err(D::Error::custom("method \"fixed\" needs the key `flexure`")),
+        (None, Some(f)) => IdentifierMethod::Fixed(std::array::from_fn(|i| Flexure {
             mu: f.mu_per_s[i],
             b: f.b_rad_per_s[i],
             sigma: f.sigma_arcsec[i],
         })),
     };
-    let IdentifierTable { window_s, period_s, lead_s, dictionary, .. } = table;
+    let IdentifierTable { window_s, period_s, lead_s, dictionary, safety, .. } = table;
     let minimum_s = table.minimum_s.unwrap_or(IdentifierSettings::default().minimum_s.min(window_s));
-    Ok(IdentifierSettings { method, window_s, period_s, lead_s, minimum_s, dictionary })
+    Ok(IdentifierSettings { method, window_s, period_s, lead_s, minimum_s, dictionary, safety })
 }
 
 fn minimum_s<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {

@@ -1,7 +1,8 @@
 use super::Settings;
-use super::axis::{Analysis, Identified};
+use super::axis::Identified;
 use super::chain::{Anchor, Chain};
 use super::safety::safe;
+use super::series::{Kind, Series};
 use super::window::Window;
 use crate::Identifier;
 use crate::flexure::Flexure;
@@ -13,15 +14,16 @@ const GUARDED_S: f64 = 120.0;
 /// By how much the variance may grow before a re-built window is thought to be worse.
 const TOLERATED: f64 = 1.05;
 
-/// The slow identifier of paper 000, a relevance vector machine, with its data rebuilt and its result made safe.
+/// The slow identifier: a window of data, rebuilt with the latest constant, each axis identified by the method of the settings,
+/// and the result made safe if they say so.
 #[derive(Clone, Debug)]
-pub struct Rvm {
+pub struct Windowed {
     settings: Settings,
     window: Window,
     kept: Option<Anchor>,
 }
 
-impl Rvm {
+impl Windowed {
     /// An identifier that has seen nothing.
     pub fn new(settings: Settings) -> Self {
         Self { settings, window: Window::new(&settings), kept: None }
@@ -43,13 +45,15 @@ impl Rvm {
     }
 
     fn identify(&self, chain: &Chain) -> Option<[Identified; 3]> {
-        let analysis = Analysis::new(chain.rates[0].len(), chain.step_s, self.settings.dictionary, true);
+        let Settings { method, dictionary, .. } = self.settings;
+        let series = |values| Series { kind: Kind::Rates, values, step_s: chain.step_s };
+        let solver = method.solver(&series(&chain.rates[0]), dictionary);
         let [x, y, z] = &chain.rates;
-        Some([analysis.identify(x)?, analysis.identify(y)?, analysis.identify(z)?])
+        Some([solver.solve(&series(x))?, solver.solve(&series(y))?, solver.solve(&series(z))?])
     }
 }
 
-impl Identifier for Rvm {
+impl Identifier for Windowed {
     fn step(&mut self, pair: &ImuPair, solution: &Solution) -> Option<FlexureParams> {
         let restarted = self.window.restarted();
         let due = self.window.take(pair, solution);
@@ -63,7 +67,10 @@ impl Identifier for Rvm {
         self.kept = Some(chain.end);
         let axes = self.identify(&chain)?;
         let length_s = self.window.length_s();
-        let models: [Flexure; 3] = axes.map(|axis| safe(&axis, length_s));
+        let models: [Flexure; 3] = match self.settings.safety {
+            true => axes.map(|axis| safe(&axis, length_s)),
+            false => axes.map(|axis| axis.flexure),
+        };
         if !models.iter().all(Flexure::is_sound) {
             return None;
         }

@@ -1,0 +1,185 @@
+//! Whittle's maximum likelihood: the model fitted to the periodogram, whose values scatter by as much as they are large.
+//!
+//! Source: P. Whittle (1953) for the model of 003 eq 7-8 and 000 eq 17-20; rival of all methods of both papers and near the bound.
+//!
+//! | parameter | prior |
+//! |---|---|
+//! | `ln mu` | N(ln 0.15, 1), if wanted |
+//! | `ln b` | N(ln 0.6, 1), if wanted |
+//! | `ln Q` | none |
+//! | `ln n`, the white noise | none; without this parameter the damping takes the noise's place (15 % at 30 dB, many times at 10 dB) |
+//!
+//! `-ln L = sum w (ln S + I / S)`, a generalised linear model of the gamma family; Fisher scoring with Levenberg's damping.
+
+use super::axis::Identified;
+use super::bound::Band;
+use super::periodogram::{Periodogram, Taper, density};
+use super::refinement::{DAMPING, FREQUENCY, MEDIANS, PRIOR_SD};
+use super::series::{Kind, Series};
+use crate::flexure::Flexure;
+use nalgebra::{Matrix4, Vector4};
+
+/// What is fitted and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Lowest and highest frequency, Hz; of high-passed data it must begin above the cut.
+    pub band_hz: (f64, f64),
+    /// How the ends are faded.
+    pub taper: Taper,
+    /// Whether the priors count.
+    pub priors: bool,
+    /// Whether there is white noise; without it the method is known to fail.
+    pub floor: bool,
+}
+
+impl Settings {
+    /// What suits a series: of rates Hann's taper, against the sway; of angles one that loses little.
+    pub fn of(series: &Series) -> Self {
+        let taper = if series.kind == Kind::Rates { Taper::Hann } else { Taper::Tukey(0.05) };
+        Self { band_hz: Band::of(series).hz, taper, priors: true, floor: true }
+    }
+}
+
+/// Most steps from a start, the largest step of a logarithm, and the change that ends it.
+const STEPS: usize = 40;
+const LONGEST: f64 = 0.5;
+const CONVERGED: f64 = 1e-5;
+/// The dampings and frequencies to start from, beside the periodogram's peak: 1/s, rad/s.
+const STARTS: [(f64, f64); 3] = [(0.15, 0.3), (0.3, 1.0), (0.1, 0.1)];
+/// Damping with which the peak is started, 1/s, and over how many frequencies it is smoothed.
+const PEAK_DAMPING: f64 = 0.12;
+const PEAK_WIDTH: usize = 15;
+/// Range of the noise's logarithm about the level of the highest frequencies.
+const FLOOR_RANGE: f64 = 25.0;
+
+/// Identifies an axis; `None` if the band is empty or nothing converges.
+pub fn identify(series: &Series, settings: &Settings) -> Option<Identified> {
+    let data = Periodogram::new(series, settings.taper, settings.band_hz)?;
+    let fit = Fit { data, kind: series.kind, step_s: series.step_s, settings: *settings };
+    let starts = STARTS.into_iter().chain(fit.peak());
+    let found = starts.filter_map(|(mu, b)| fit.climb(fit.start(mu, b)));
+    let (logs, _) = found.min_by(|one, other| one.1.total_cmp(&other.1))?;
+    let mut information = fit.scores(&logs).1;
+    if !settings.floor {
+        information[(3, 3)] = 1.0;
+    }
+    let covariance = information.try_inverse()?.fixed_view::<3, 3>(0, 0).into_owned();
+    Identified::new(flexure(&logs), &covariance, series.length_s()).filter(|found| found.flexure.is_sound())
+}
+
+struct Fit {
+    data: Periodogram,
+    kind: Kind,
+    step_s: f64,
+    settings: Settings,
+}
+
+fn flexure(logs: &Vector4<f64>) -> Flexure {
+    let (mu, b) = (logs[0].exp(), logs[1].exp());
+    Flexure { mu, b, sigma: (logs[2].exp() / (4.0 * mu * b * b)).sqrt() }
+}
+
+impl Fit {
+    /// Mean power of the tenth of the highest frequencies.
+    fn floor(&self) -> f64 {
+        let count = self.data.power.len();
+        let highest = &self.data.power[count - (count / 10).max(4)..];
+        (highest.iter().sum::<f64>() / highest.len() as f64).max(f64::MIN_POSITIVE)
+    }
+
+    /// The peak of the smooth periodogram.
+    fn peak(&self) -> Option<(f64, f64)> {
+        let sums = self.data.power.windows(PEAK_WIDTH).map(|window| window.iter().sum::<f64>());
+        let (place, _) = sums.enumerate().max_by(|one, other| one.1.total_cmp(&other.1))?;
+        Some((PEAK_DAMPING, self.data.frequencies[place + PEAK_WIDTH / 2]))
+    }
+
+    /// The logarithms of damping, frequency, density, and noise; the density such that the total power is right.
+    fn start(&self, mu: f64, b: f64) -> Vector4<f64> {
+        let unit = Flexure { mu, b, sigma: 1.0 };
+        let model: f64 = self.data.frequencies.iter().map(|w| density(&unit, self.kind, self.step_s, *w).0).sum();
+        let ratio = self.data.power.iter().sum::<f64>() / model;
+        Vector4::new(mu.ln(), b.ln(), (unit.density() * ratio).ln(), (0.5 * self.floor()).ln())
+    }
+
+    fn away(&self, logs: &Vector4<f64>) -> Vector4<f64> {
+        let share = if self.settings.priors { 1.0 / (PRIOR_SD * PRIOR_SD) } else { 0.0 };
+        Vector4::new(share * (logs[0] - MEDIANS.0.ln()), share * (logs[1] - MEDIANS.1.ln()), 0.0, 0.0)
+    }
+
+    fn noise(&self, logs: &Vector4<f64>) -> f64 {
+        if self.settings.floor { logs[3].exp() } else { 0.0 }
+    }
+
+    /// Minus the logarithm of the posterior density.
+    fn cost(&self, logs: &Vector4<f64>) -> f64 {
+        let (model, noise) = (flexure(logs), self.noise(logs));
+        let bins = self.data.frequencies.iter().zip(&self.data.power);
+        let misfit: f64 = bins
+            .map(|(w, power)| {
+                let level = density(&model, self.kind, self.step_s, *w).0 + noise;
+                level.ln() + power / level
+            })
+            .sum();
+        let away = self.away(logs);
+        let squares = away.norm_squared() * PRIOR_SD * PRIOR_SD;
+        self.data.weight * misfit + 0.5 * squares
+    }
+
+    /// Direction downhill and information.
+    fn scores(&self, logs: &Vector4<f64>) -> (Vector4<f64>, Matrix4<f64>) {
+        let (model, noise) = (flexure(logs), self.noise(logs));
+        let (mut downhill, mut information) = (Vector4::zeros(), Matrix4::zeros());
+        for (w, power) in self.data.frequencies.iter().zip(&self.data.power) {
+            let (flexible, slopes) = density(&model, self.kind, self.step_s, *w);
+            let level = flexible + noise;
+            let slope = Vector4::new(slopes[0], slopes[1], slopes[2], noise) / level;
+            downhill += slope * (power / level - 1.0);
+            information += slope * slope.transpose();
+        }
+        let mut information = information * self.data.weight;
+        if self.settings.priors {
+            information[(0, 0)] += 1.0 / (PRIOR_SD * PRIOR_SD);
+            information[(1, 1)] += 1.0 / (PRIOR_SD * PRIOR_SD);
+        }
+        (downhill * self.data.weight - self.away(logs), information)
+    }
+
+    /// The logarithms at the end, and their cost.
+    fn climb(&self, mut logs: Vector4<f64>) -> Option<(Vector4<f64>, f64)> {
+        let floor = self.floor().ln();
+        let bounded = |logs: Vector4<f64>| {
+            Vector4::new(
+                logs[0].clamp(DAMPING.0.ln(), DAMPING.1.ln()),
+                logs[1].clamp(FREQUENCY.0.ln(), FREQUENCY.1.ln()),
+                logs[2],
+                logs[3].clamp(floor - FLOOR_RANGE, floor + 1.0),
+            )
+        };
+        let mut cost = self.cost(&logs);
+        let mut damping = 1e-3;
+        for _ in 0..STEPS {
+            let (downhill, information) = self.scores(&logs);
+            let mut moved = 0.0;
+            while damping < 1e8 {
+                // The last term keeps a noise that cannot be seen where it is.
+                let damped = information
+                    + Matrix4::from_diagonal(&information.diagonal()) * damping
+                    + Matrix4::identity() * 1e-9;
+                let step = damped.cholesky()?.solve(&downhill).map(|s| s.clamp(-LONGEST, LONGEST));
+                let next = bounded(logs + step);
+                let next_cost = self.cost(&next);
+                if next_cost <= cost {
+                    moved = (next - logs).amax();
+                    (logs, cost, damping) = (next, next_cost, (damping / 10.0_f64).max(1e-9));
+                    break;
+                }
+                damping *= 10.0;
+            }
+            if moved < CONVERGED {
+                break;
+            }
+        }
+        cost.is_finite().then_some((logs, cost))
+    }
+}
