@@ -27,7 +27,7 @@ pub use plan::{Plan, Trial, Trials};
 pub use row::{Bound, Claim, Row};
 pub use statistics::{mean, rms, spread};
 pub use study::{Findings, Study, Watch};
-pub use track::{Adoption, Delay, Point, Stretch, Track};
+pub use track::{Adoption, Estimated, Point, Stretch, Track};
 pub use verdict::{Published, Verdict};
 
 use rayon::prelude::*;

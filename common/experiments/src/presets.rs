@@ -5,14 +5,43 @@ use pipeline::configuration::Configuration;
 use std::path::Path;
 
 macro_rules! presets {
-    ($($name:literal: $path:literal),* $(,)?) => {
-        const PRESETS: &[(&str, &str, &str)] =
-            &[$(($name, $path, include_str!(concat!("../../../", $path)))),*];
+    ($($name:literal),* $(,)?) => {
+        const PRESETS: &[(&str, &str, &str)] = &[
+            ("demo", "config/demo.toml", include_str!("../../../config/demo.toml")),
+            $((
+                $name,
+                concat!("config/papers/", $name, ".toml"),
+                include_str!(concat!("../../../config/papers/", $name, ".toml")),
+            )),*
+        ];
     };
 }
 
 presets! {
-    "demo": "config/demo.toml",
+    "error_range_strong",
+    "error_range_strong_turns",
+    "error_range_weak",
+    "error_range_weak_turns",
+    "idam",
+    "idam_impulsive",
+    "idam_outliers",
+    "idam_shipborne",
+    "idam_shipborne_static",
+    "model_free_1_1_large",
+    "model_free_1_1_small",
+    "model_free_1_2_large",
+    "model_free_1_2_small",
+    "model_free_1_3_large",
+    "model_free_1_3_small",
+    "model_free_2_1_large",
+    "model_free_2_1_small",
+    "model_free_2_2_large",
+    "model_free_2_2_small",
+    "model_free_2_3_large",
+    "model_free_2_3_small",
+    "q_nnkf",
+    "tufts_kumaresan",
+    "tufts_kumaresan_band_limited",
 }
 
 /// Name and text of each.

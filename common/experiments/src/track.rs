@@ -5,13 +5,18 @@ use pipeline::solution_file::deviations;
 use pipeline::summary::deformation_error;
 use std::ops::RangeBounds;
 
-/// An estimated time delay of the sub unit.
+/// An estimate of the sub unit's clock.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Delay {
-    /// s.
+pub struct Estimated {
+    /// The estimate, in SI units.
     pub value: f64,
-    /// Its standard deviation, s.
+    /// Its standard deviation.
     pub sigma: f64,
+}
+
+/// A solution tells a standard deviation of zero where nothing is estimated.
+fn estimated(value: f64, sigma: f64) -> Option<Estimated> {
+    (sigma > 0.0).then_some(Estimated { value, sigma })
 }
 
 /// One instant of a run: rad, in m.
@@ -36,7 +41,9 @@ pub struct Point {
     /// The same error of the dynamic part.
     pub dynamic_error: [f64; 3],
     /// The delay by now, if the method estimates one.
-    pub delay: Option<Delay>,
+    pub delay: Option<Estimated>,
+    /// By how much the delay grows in a second, if the method estimates it.
+    pub skew: Option<Estimated>,
     /// What the solution says about itself.
     pub flags: Flags,
 }
@@ -57,8 +64,8 @@ impl Point {
             range: solution.range,
             static_error: (found * real.inverse()).log().array(),
             dynamic_error: (bent * really_bent.inverse()).log().array(),
-            // a Solution has no place for one yet
-            delay: None,
+            delay: estimated(solution.delay, solution.delay_sigma),
+            skew: estimated(solution.skew, solution.skew_sigma),
             flags: solution.flags,
         }
     }
