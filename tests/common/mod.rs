@@ -1,6 +1,7 @@
 //! What the tests with real processes share: a folder of their own, configurations, launches and what is left of them.
 #![allow(dead_code, clippy::unwrap_used)] // each test file uses a part
 
+pub mod comparison;
 pub mod launch;
 pub mod retrace;
 pub mod run;

@@ -1,0 +1,30 @@
+//! Every system of the papers also runs as processes, and gives the bits of the offline loop.
+#![allow(clippy::unwrap_used)]
+
+mod common;
+
+use common::{Place, comparison};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::thread;
+
+/// So many run at a time: most of the time they wait for the next sample.
+const TOGETHER: usize = 6;
+
+#[test]
+fn every_preset_gives_the_same_live_and_offline() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("config/papers");
+    let mut presets: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    presets.sort();
+    assert!(presets.len() > 20, "{presets:?}");
+    for batch in presets.chunks(TOGETHER) {
+        thread::scope(|scope| {
+            for preset in batch {
+                scope.spawn(|| {
+                    let live = comparison::same_live_and_offline(&Place::new(), preset, "20s");
+                    assert!(live.errors.is_empty(), "{}: {}", preset.display(), live.errors);
+                });
+            }
+        });
+    }
+}
