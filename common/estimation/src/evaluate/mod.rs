@@ -3,6 +3,15 @@
 //! | range | file |
 //! |---|---|
 //! | so many standard deviations | [`Deviations`] |
+//! | covariance of flexure rate and static part, with a coefficient (004) | [`ErrorRange`] |
+//! | assumed coherence of flexure and ship, unit-consistent | [`Coherence`] |
+
+mod coherence;
+mod error_range;
+mod window;
+
+pub use coherence::Coherence;
+pub use error_range::ErrorRange;
 
 use frames::{Main, Vec3};
 use nalgebra::Matrix3;

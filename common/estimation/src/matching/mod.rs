@@ -1,5 +1,6 @@
 //! Matching models: what the difference of two units' attitudes, rates or velocities says about the deformation.
 
+pub mod attitude_dcm;
 #[cfg(test)]
 mod conformance;
 pub mod rate;
