@@ -3,6 +3,7 @@
 pub mod attitude_dcm;
 #[cfg(test)]
 mod conformance;
+pub mod network;
 pub mod rate;
 pub mod so3;
 
