@@ -3,8 +3,10 @@
 //! | filter | file |
 //! |---|---|
 //! | Kalman, and extended Kalman where the model's measurement is the exact one | [`kalman`] |
+//! | unscented | [`unscented`] |
 
 pub mod kalman;
+pub mod unscented;
 
 use crate::matching::Matching;
 use nalgebra::SMatrix;
@@ -14,6 +16,8 @@ use nalgebra::SMatrix;
 pub enum Filter {
     /// Linear update at the nominal state.
     Kalman,
+    /// Sigma points around the nominal state.
+    Unscented,
 }
 
 impl Filter {
@@ -28,6 +32,7 @@ impl Filter {
         let seen = model.observe();
         let error = match self {
             Self::Kalman => kalman::update(p, &seen.residual, &seen.matrix, &seen.noise)?,
+            Self::Unscented => unscented::update(model, p, &seen.noise)?,
         };
         model.inject(&error);
         Some(())
