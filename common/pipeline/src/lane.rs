@@ -8,8 +8,11 @@ use estimation::estimator::{self, MakeRegister, Matched, MatchedSettings, So3Est
 use estimation::evaluate::{Deviations, Evaluate};
 use estimation::filter::Filter;
 use estimation::identify::{self, Fixed, Windowed};
+use estimation::matching::exact_attitude::ExactAttitude;
 use estimation::matching::rate::{self, RateMatching};
-use estimation::matching::{self, Model, so3};
+use estimation::matching::residual_attitude::ResidualAttitude;
+use estimation::matching::small_angle::SmallAngle;
+use estimation::matching::{self, Model, angles, so3};
 use estimation::synchronise::{self, Synchroniser, Unit};
 use estimation::{Estimator, Identifier};
 use frames::unit::nanoseconds;
@@ -36,6 +39,9 @@ pub fn estimator(configuration: &Configuration, area: usize) -> Box<dyn Estimato
             area,
             rate::Options { static_walk: told.static_walk * told.static_walk },
         ),
+        MatchingMethod::ResidualAttitude => matched::<ResidualAttitude, { angles::STATES }, 3>(configuration, area, ()),
+        MatchingMethod::SmallAngle => matched::<SmallAngle, { angles::STATES }, 3>(configuration, area, ()),
+        MatchingMethod::ExactAttitude => matched::<ExactAttitude, { angles::STATES }, 3>(configuration, area, ()),
     }
 }
 
@@ -55,6 +61,7 @@ fn matched<M: Model<N, K> + 'static, const N: usize, const K: usize>(
     };
     let filter = match area.estimator.filter {
         FilterMethod::Kalman => Filter::Kalman,
+        FilterMethod::Unscented => Filter::Unscented,
     };
     let evaluation: Box<dyn Evaluate> = match area.estimator.range {
         RangeMethod::Normal => Box::new(Deviations(1.96)),

@@ -1,10 +1,14 @@
 //! Matching models: what the difference of two units' attitudes, rates or velocities says about the deformation.
 
+pub mod angles;
 pub mod attitude_dcm;
 #[cfg(test)]
 mod conformance;
+pub mod exact_attitude;
 pub mod network;
 pub mod rate;
+pub mod residual_attitude;
+pub mod small_angle;
 pub mod so3;
 
 use crate::flexure::Flexure;

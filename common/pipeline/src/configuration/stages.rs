@@ -27,6 +27,12 @@ pub enum MatchingMethod {
     So3,
     /// Angular rates, 12 states.
     Rate,
+    /// Attitudes, what a registration has left over, 18 states.
+    ResidualAttitude,
+    /// Attitudes without registration, for small angles, 18 states.
+    SmallAngle,
+    /// Attitudes without registration, as they are, 18 states.
+    ExactAttitude,
 }
 
 /// How the fast stage corrects its state.
@@ -36,6 +42,8 @@ pub enum FilterMethod {
     /// Linear update.
     #[default]
     Kalman,
+    /// Sigma points.
+    Unscented,
 }
 
 /// What the published range is made of.
@@ -55,6 +63,8 @@ impl MatchingMethod {
         match self {
             Self::So3 => &[RegistrationMethod::Motion],
             Self::Rate => &[RegistrationMethod::Motion, RegistrationMethod::Installation],
+            Self::ResidualAttitude => &[RegistrationMethod::Motion, RegistrationMethod::Installation],
+            Self::SmallAngle | Self::ExactAttitude => &[RegistrationMethod::Installation],
         }
     }
 
@@ -62,6 +72,9 @@ impl MatchingMethod {
     pub fn filters(self) -> &'static [FilterMethod] {
         match self {
             Self::So3 | Self::Rate => &[FilterMethod::Kalman],
+            Self::ResidualAttitude | Self::SmallAngle | Self::ExactAttitude => {
+                &[FilterMethod::Kalman, FilterMethod::Unscented]
+            }
         }
     }
 
@@ -69,7 +82,9 @@ impl MatchingMethod {
     pub fn ranges(self) -> &'static [RangeMethod] {
         match self {
             Self::So3 => &[RangeMethod::Normal],
-            Self::Rate => &[RangeMethod::Normal, RangeMethod::Naive],
+            Self::Rate | Self::ResidualAttitude | Self::SmallAngle | Self::ExactAttitude => {
+                &[RangeMethod::Normal, RangeMethod::Naive]
+            }
         }
     }
 }

@@ -1,0 +1,92 @@
+//! Attitude matching without a registration, for small angles.
+//!
+//! Source: paper 001 eq 37, the measurement of its rivals: `Z`, the Euler angles of `A_m^T A_s`, is `A_m^T eta + phi` to first order in the
+//! 18 states of [`super::angles`], and `phi` is the total's Euler angles in eq 22's order. What it leaves out is of the size of the sway
+//! times the square of the angle: hundreds of arcseconds from a degree on. Being linear, it gives an extended Kalman filter nothing to
+//! linearise: for that there is [`super::exact_attitude`].
+//!
+//! Corrections: eq 22's arcsin of a quotient is an arctangent.
+
+use super::angles::{Angles, CONSTANT, Covariance, Rows, STATES, STATIC, State};
+use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
+use crate::flexure::Flexure;
+use frames::{Main, Rot, Sub, Vec3};
+use nalgebra::{Matrix3, Vector3};
+
+/// The nominal state.
+#[derive(Clone, Debug)]
+pub struct SmallAngle {
+    /// The states.
+    pub angles: Angles,
+}
+
+impl SmallAngle {
+    /// What is measured, rad.
+    pub fn measured(&self) -> Vector3<f64> {
+        let turned: Rot<Main, Sub> = self.angles.a_m.relabel::<Main, Main>().inverse() * self.angles.a_s.relabel();
+        euler(&turned.matrix())
+    }
+
+    /// How that depends on the states.
+    // 001 eq 37
+    pub fn matrix(&self) -> Rows {
+        let mut matrix = Angles::phi_rows();
+        matrix.fixed_view_mut::<3, 3>(0, CONSTANT).copy_from(&self.angles.a_m.matrix().transpose());
+        matrix
+    }
+}
+
+/// The Euler angles about x, y, z of `Rz Rx Ry`.
+// 001 eq 22
+fn euler(c: &Matrix3<f64>) -> Vector3<f64> {
+    let x = c[(2, 1)].clamp(-1.0, 1.0).asin();
+    Vector3::new(x, (-c[(2, 0)]).atan2(c[(2, 2)]), (-c[(0, 1)]).atan2(c[(1, 1)]))
+}
+
+/// The rotation of Euler angles about x, y, z.
+fn rotation(phi: Vector3<f64>) -> Rot<Main, Sub> {
+    let about = |axis: Vec3<Main>| Rot::<Main, Main>::exp(axis);
+    let turned = about(Vec3::new(0.0, 0.0, phi.z)) * about(Vec3::new(phi.x, 0.0, 0.0));
+    (turned * about(Vec3::new(0.0, phi.y, 0.0))).relabel()
+}
+
+impl Matching<STATES, 3> for SmallAngle {
+    fn propagate(&mut self) -> Prediction<STATES> {
+        self.angles.propagate()
+    }
+
+    fn observe(&self) -> Observation<STATES, 3> {
+        let matrix = self.matrix();
+        Observation { residual: self.measured() - matrix * self.angles.x, matrix, noise: Angles::measurement_noise() }
+    }
+
+    fn inject(&mut self, error: &State) {
+        self.angles.x += error;
+    }
+}
+
+impl Model<STATES, 3> for SmallAngle {
+    type Options = ();
+
+    fn begin(_: &(), start: &Start) -> (Self, Covariance) {
+        let (angles, p) = Angles::begin(start, Rot::identity());
+        (Self { angles }, p)
+    }
+
+    fn advance(&mut self, motion: &Motion) {
+        self.angles.advance(motion);
+    }
+
+    fn set_flexure(&mut self, flexure: [Flexure; 3]) {
+        self.angles.set_flexure(flexure);
+    }
+
+    fn view(&self) -> View<STATES> {
+        let now = self.angles.now();
+        View {
+            deformation: rotation(Angles::phi_rows() * now),
+            static_part: rotation(Angles::rows_of(STATIC) * now),
+            ..self.angles.view()
+        }
+    }
+}
