@@ -4,12 +4,18 @@
 //! |---|---|
 //! | Kalman, and extended Kalman where the model's measurement is the exact one | [`kalman`] |
 //! | unscented | [`unscented`] |
+//! | maximum correntropy | [`correntropy`] |
+//! | model predictive, before either of them | [`predictive`] |
 
+pub mod correntropy;
 pub mod kalman;
+pub mod predictive;
 pub mod unscented;
 
-use crate::matching::Matching;
-use nalgebra::SMatrix;
+use crate::matching::{Matching, Observation};
+use correntropy::Kernel;
+use nalgebra::{SMatrix, SVector};
+use predictive::Weight;
 
 /// The filters that go with every matching model.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,6 +24,10 @@ pub enum Filter {
     Kalman,
     /// Sigma points around the nominal state.
     Unscented,
+    /// Linear update with each measurement weighed by its residual.
+    Correntropy(Kernel),
+    /// The model's error is predicted and compensated first; then comes a linear update, weighed where a kernel is given.
+    Predictive(Weight, Option<Kernel>),
 }
 
 impl Filter {
@@ -27,16 +37,33 @@ impl Filter {
         &self,
         model: &mut M,
         p: &mut SMatrix<f64, N, N>,
-        _driven: &SMatrix<f64, N, N>,
+        driven: &SMatrix<f64, N, N>,
     ) -> Option<()> {
-        let seen = model.observe();
-        let error = match self {
-            Self::Kalman => kalman::update(p, &seen.residual, &seen.matrix, &seen.noise)?,
-            Self::Unscented => unscented::update(model, p, &seen.noise)?,
+        let error = match *self {
+            Self::Kalman => linear(model, p, None)?,
+            Self::Unscented => unscented::update(model, p, &model.observe().noise)?,
+            Self::Correntropy(kernel) => linear(model, p, Some(kernel))?,
+            Self::Predictive(weight, kernel) => {
+                let seen = model.observe();
+                let moved = predictive::compensation(weight, p, driven, &seen.residual, &seen.matrix, &seen.noise)?;
+                model.inject(&moved);
+                linear(model, p, kernel)?
+            }
         };
         model.inject(&error);
         Some(())
     }
+}
+
+/// Kalman's update, the measurements weighed where a kernel is given.
+fn linear<M: Matching<N, K>, const N: usize, const K: usize>(
+    model: &M,
+    p: &mut SMatrix<f64, N, N>,
+    kernel: Option<Kernel>,
+) -> Option<SVector<f64, N>> {
+    let Observation { residual, matrix, noise } = model.observe();
+    let noise = kernel.map_or(noise, |kernel| kernel.noise(p, &residual, &matrix, &noise));
+    kalman::update(p, &residual, &matrix, &noise)
 }
 
 /// Makes a covariance exactly symmetric.

@@ -8,6 +8,7 @@ pub mod exact_attitude;
 pub mod network;
 pub mod rate;
 pub mod residual_attitude;
+pub mod rodrigues;
 pub mod small_angle;
 pub mod so3;
 
