@@ -1,7 +1,9 @@
 //! Coarse registration: the installation of a sub unit, at any angle, from the first seconds of data.
 
+mod delay;
 mod motion;
 
+pub use delay::DelayRegistrar;
 pub use motion::Registrar;
 
 use frames::{Main, Rot, Sub, Vec3, unit};
@@ -14,6 +16,23 @@ pub trait Register: Send {
     fn add(&mut self, pair: &ImuPair);
     /// The registration so far; `None` with too little data or motion.
     fn solve(&self) -> Option<Registration>;
+    /// By how much the sub unit's stamps are late, for a registration that finds it.
+    fn lag(&self) -> Option<Lag> {
+        None
+    }
+    /// The pairs so far, for a registration that lets the filter run over them from the first one on.
+    fn held(&self) -> &[ImuPair] {
+        &[]
+    }
+}
+
+/// By how much the sub unit's stamps are late.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lag {
+    /// s.
+    pub delay: f64,
+    /// Its standard deviation, s.
+    pub sigma: f64,
 }
 
 /// Largest standard deviation of a registered axis.

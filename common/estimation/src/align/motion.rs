@@ -121,7 +121,7 @@ impl Register for Registrar {
 }
 
 /// The rotation nearest to a matrix, and the matrix's singular values.
-fn nearest_rotation(m: &Matrix3<f64>) -> Option<(Matrix3<f64>, Vector3<f64>)> {
+pub(super) fn nearest_rotation(m: &Matrix3<f64>) -> Option<(Matrix3<f64>, Vector3<f64>)> {
     let svd = m.try_svd(true, true, f64::EPSILON, 100)?;
     let (u, v_t) = (svd.u?, svd.v_t?);
     let sign = (u.determinant() * v_t.determinant()).signum();

@@ -108,18 +108,42 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
             rotation,
             covariance,
         };
-        let (model, p) = M::begin(&self.settings.options, &start);
-        self.running = Some(Running {
+        self.begin(pair, &start);
+    }
+
+    /// Starts the filter with a pair, or with the first that registration has held and runs it up to the pair.
+    fn begin(&mut self, pair: &ImuPair, start: &Start) {
+        let registration = self.registration.take();
+        let (lag, held) = registration.as_ref().map_or((None, [].as_slice()), |found| (found.lag(), found.held()));
+        let (first, later) = held.split_first().unwrap_or((pair, &[]));
+        let (mut model, mut p) = M::begin(&self.settings.options, start);
+        if let Some(lag) = lag {
+            model.delayed(&lag, &mut p);
+        }
+        let begin_ns = first.header.time_ns;
+        let mut running = Running {
             model,
             p,
-            epoch: pair.epoch,
-            begin_ns: time_ns,
-            last_ns: time_ns,
-            updated_ns: time_ns,
-            start_m: Rot::from_wxyz(pair.attitude_m),
-            start_s: Rot::from_wxyz(pair.attitude_s),
+            epoch: first.epoch,
+            begin_ns,
+            last_ns: begin_ns,
+            updated_ns: begin_ns,
+            start_m: Rot::from_wxyz(first.attitude_m),
+            start_s: Rot::from_wxyz(first.attitude_s),
             w_im_m: Vec3::ZERO,
-        });
+        };
+        let period_s = self.period_s();
+        let sound = later.iter().all(|pair| running.step(pair, &self.settings.filter, period_s).is_some());
+        if sound {
+            self.running = Some(running);
+        } else {
+            self.reset();
+        }
+    }
+
+    /// The least time from one update to the next.
+    fn period_s(&self) -> f64 {
+        1.0 / self.settings.area.filter_hz - 0.5 * self.settings.area.interval_s
     }
 
     /// Starts anew: the frames of the filter's start are lost.
@@ -192,6 +216,7 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Estimator for Matched<M, N,
         if self.running.as_ref().is_some_and(|running| running.epoch != pair.epoch) {
             self.reset();
         }
+        let period_s = self.period_s();
         match &mut self.running {
             None => self.register(pair),
             Some(_) if pair.flags.contains(Flags::GAP) => flags |= Flags::COASTING,
@@ -199,8 +224,6 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Estimator for Matched<M, N,
                 if let Some(flexure) = self.adoption.flexure() {
                     running.model.set_flexure(flexure);
                 }
-                let area = &self.settings.area;
-                let period_s = 1.0 / area.filter_hz - 0.5 * area.interval_s;
                 if running.step(pair, &self.settings.filter, period_s).is_none() {
                     self.reset();
                 }

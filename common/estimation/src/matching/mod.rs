@@ -6,12 +6,15 @@ pub mod attitude_dcm;
 mod conformance;
 pub mod exact_attitude;
 pub mod network;
+pub mod quaternion;
 pub mod rate;
 pub mod residual_attitude;
 pub mod rodrigues;
+pub mod retiming;
 pub mod small_angle;
 pub mod so3;
 
+use crate::align::Lag;
 use crate::flexure::Flexure;
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector};
@@ -133,6 +136,8 @@ pub trait Model<const N: usize, const K: usize>: Matching<N, K> + Send {
     type Options: Clone + Send;
     /// The state at the filter's start, with its covariance.
     fn begin(options: &Self::Options, start: &Start) -> (Self, SMatrix<f64, N, N>);
+    /// Starts from what registration has found out about the delay; a model without one lets it be.
+    fn delayed(&mut self, _lag: &Lag, _p: &mut SMatrix<f64, N, N>) {}
     /// Takes in what both units felt since the pair before.
     fn advance(&mut self, motion: &Motion);
     /// Replaces the flexure model from now on.

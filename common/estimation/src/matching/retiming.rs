@@ -1,0 +1,157 @@
+//! The units' attitudes of one moment, although the sub unit's stamps are late.
+//!
+//! Source: the time base of paper 002's reworking. The sub unit's attitude stamped `t` is that of `t - tau`. Re-timing belongs into the
+//! estimator, for only the filter knows the delay: it keeps the attitudes of the last second and asks for the main unit's of an earlier
+//! instant (or, when the stamps are early, for the sub unit's), so that nothing has to be waited for. ATTITUDES are interpolated, never rates:
+//! nothing is lost or felt twice whatever the shift does, and a change of it leaves the accumulated attitudes as they are.
+//!
+//! Four points on SO(3): Lagrange's polynomial through the rotation vectors from the node before the instant.
+
+use super::Motion;
+use frames::{Frame, Main, MainStart, Rot, Sub, SubStart, Vec3};
+use std::collections::VecDeque;
+
+/// The largest shift, s.
+pub const LONGEST_S: f64 = 1.0;
+/// So much more is kept, s.
+const MARGIN_S: f64 = 0.2;
+/// A longer hole between two nodes is not bridged, s.
+const HOLE_S: f64 = 0.25;
+/// Points of the polynomial.
+const POINTS: usize = 4;
+
+/// Both units at one moment, but for what the shift is wrong by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Together {
+    /// The main unit's accumulated attitude.
+    pub a_m: Rot<MainStart, Main>,
+    /// The sub unit's.
+    pub a_s: Rot<SubStart, Sub>,
+    /// Rate of the main unit, rad/s.
+    pub w_m: Vec3<Main>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Node {
+    time_s: f64,
+    a_m: Rot<MainStart, Main>,
+    a_s: Rot<SubStart, Sub>,
+}
+
+/// The attitudes of the last second.
+#[derive(Clone, Debug)]
+pub struct Attitudes {
+    nodes: VecDeque<Node>,
+}
+
+impl Attitudes {
+    /// Room for units of so many samples a second, so that nothing is allocated later.
+    pub fn new(room: usize) -> Self {
+        Self { nodes: VecDeque::with_capacity(room) }
+    }
+
+    /// Takes in what both units felt.
+    pub fn push(&mut self, motion: &Motion) {
+        let oldest_s = motion.time_s - LONGEST_S - MARGIN_S;
+        while self.nodes.len() > POINTS && self.nodes[0].time_s < oldest_s {
+            self.nodes.pop_front();
+        }
+        if self.nodes.len() == self.nodes.capacity() {
+            self.nodes.pop_front();
+        }
+        self.nodes.push_back(Node { time_s: motion.time_s, a_m: motion.a_m, a_s: motion.a_s });
+    }
+
+    /// Both units as they are when the sub unit's stamps are late by `shift_s`; `None` while that instant is not covered.
+    pub fn together(&self, shift_s: f64) -> Option<Together> {
+        let newest = self.nodes.back()?;
+        let (a_m, w_m) = self.at(newest.time_s - shift_s.max(0.0), |node| node.a_m)?;
+        let a_s = match shift_s {
+            0.0.. => newest.a_s,
+            _ => self.at(newest.time_s + shift_s, |node| node.a_s)?.0,
+        };
+        Some(Together { a_m, a_s, w_m })
+    }
+
+    /// An attitude between the nodes, with its rate.
+    fn at<A: Frame, B: Frame>(&self, time_s: f64, of: impl Fn(&Node) -> Rot<A, B>) -> Option<(Rot<A, B>, Vec3<B>)> {
+        let nodes = &self.nodes;
+        let right = nodes.partition_point(|node| node.time_s < time_s);
+        if right == 0 || right == nodes.len() || nodes.len() < POINTS {
+            return None;
+        }
+        let first = right.saturating_sub(2).min(nodes.len() - POINTS);
+        let left = &nodes[right - 1];
+        let at = |i: usize| nodes[first + i].time_s - left.time_s;
+        if nodes[right].time_s - left.time_s > HOLE_S {
+            return None;
+        }
+        let (t, origin) = (time_s - left.time_s, of(left));
+        let (mut turn, mut rate) = (Vec3::<B>::ZERO, Vec3::<B>::ZERO);
+        for i in (0..POINTS).filter(|&i| first + i != right - 1) {
+            let (weight, slope) = lagrange(i, t, at);
+            let phi = (origin.inverse() * of(&nodes[first + i])).log();
+            turn += phi * weight;
+            rate += phi * slope;
+        }
+        Some((origin * Rot::<B, B>::exp(turn), rate))
+    }
+}
+
+/// Lagrange's polynomial that is 1 at point `i` and 0 at the others, at `t`, with its slope.
+fn lagrange(i: usize, t: f64, at: impl Fn(usize) -> f64) -> (f64, f64) {
+    let (mut value, mut slope) = (1.0, 0.0);
+    for j in (0..POINTS).filter(|&j| j != i) {
+        let length = at(i) - at(j);
+        slope = (slope * (t - at(j)) + value) / length;
+        value *= (t - at(j)) / length;
+    }
+    (value, slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matching::conformance::{STEP_S, Voyage};
+    use frames::unit::ARCSEC;
+
+    fn voyage(delay_s: f64) -> Voyage {
+        Voyage { installation: Rot::identity(), flexure: 0.0, delay_s, lever_arm: Vec3::ZERO }
+    }
+
+    fn attitudes(voyage: &Voyage, upto: usize) -> Attitudes {
+        let mut attitudes = Attitudes::new(256);
+        (1..=upto).for_each(|k| attitudes.push(&voyage.motion(k)));
+        attitudes
+    }
+
+    #[test]
+    fn two_units_on_a_rigid_ship_stay_as_they_were_whatever_the_delay() {
+        for delay_s in [0.0, 0.0123, 0.2, -0.0577, 0.937] {
+            let voyage = voyage(delay_s);
+            let mut first = None;
+            let mut attitudes = Attitudes::new(256);
+            for k in 1..700 {
+                attitudes.push(&voyage.motion(k));
+                let Some(Together { a_m, a_s, w_m }) = attitudes.together(delay_s) else { continue };
+                let constant: Rot<MainStart, SubStart> = a_m * Rot::<Main, Sub>::identity() * a_s.inverse();
+                let first = *first.get_or_insert(constant);
+                assert!((constant * first.inverse()).angle() < 1e-4 * ARCSEC, "{delay_s} {k}");
+                let moment = k as f64 * STEP_S - delay_s.max(0.0);
+                assert!((w_m - voyage.rate(moment)).norm() < 2.0 * ARCSEC, "{delay_s} {k}");
+            }
+            assert!(first.is_some());
+        }
+    }
+
+    #[test]
+    fn an_instant_without_data_gives_nothing() {
+        let mut attitudes = attitudes(&voyage(0.0), 50);
+        assert!(attitudes.together(0.6).is_none() && attitudes.together(0.4).is_some());
+        let mut late = voyage(0.0).motion(51);
+        late.time_s += 0.5;
+        attitudes.push(&late);
+        assert!(attitudes.together(0.2).is_none() && attitudes.together(0.6).is_some());
+        assert!(Attitudes::new(8).together(0.0).is_none());
+    }
+}
