@@ -3,10 +3,12 @@
 pub mod angles;
 pub mod attitude_dcm;
 #[cfg(test)]
-mod conformance;
+pub(crate) mod conformance;
+mod constant;
 pub mod exact_attitude;
 pub mod network;
 pub mod quaternion;
+pub mod quaternion_network;
 pub mod rate;
 pub mod residual_attitude;
 pub mod rodrigues;

@@ -26,7 +26,8 @@
 //! apart; the constant must not be tied to the first deformation alone, for the delay shifts the frames' start too; the elements (1,2), (3,1),
 //! (3,2) of the matching matrix give way to the rotation vector. Static part and flexure share one Jacobian, see `so3`.
 
-use super::retiming::{Attitudes, LONGEST_S, Together};
+use super::constant::{Since, drifted};
+use super::retiming::{Retimed, Together};
 use super::so3::Grade;
 use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
 use crate::align::Lag;
@@ -50,11 +51,7 @@ const BIAS_DOUBT: f64 = 3.0;
 /// Rate of a static part that moves, rad/s.
 const STATIC_RATE_SIGMA: f64 = 0.5 * unit::ARCSEC;
 /// Regularises a measurement that has no noise of its own, rad.
-const MATCHING_SIGMA: f64 = 0.05 * unit::ARCSEC;
-/// A rest of the delay beyond this goes into the re-timing, s.
-const REST_S: f64 = 1e-3;
-/// Room for the attitudes of units of up to 1000 Hz.
-const ROOM: usize = 1280;
+pub(super) const MATCHING_SIGMA: f64 = 0.05 * unit::ARCSEC;
 
 /// Which use of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -121,16 +118,6 @@ impl State {
     }
 }
 
-/// What has come in since the last propagation.
-#[derive(Clone, Copy, Debug, Default)]
-struct Since {
-    time_s: f64,
-    /// `sum A_m dt`: how a bias error turns the constant.
-    by_bias: Matrix3<f64>,
-    /// Variance per axis that random walk and disturbances added to the constant.
-    walk: f64,
-}
-
 /// The model.
 #[derive(Clone, Debug)]
 pub struct Quaternion {
@@ -138,10 +125,7 @@ pub struct Quaternion {
     grade: Grade,
     flexure: [Flexure; 3],
     state: State,
-    attitudes: Attitudes,
-    /// The delay that the re-timing takes out, s.
-    shift: f64,
-    together: Option<Together>,
+    attitudes: Retimed,
     /// Whether the constant has been set from attitudes of one moment.
     begun: bool,
     since: Since,
@@ -157,7 +141,7 @@ impl Quaternion {
 
     /// By how much the sub unit's data are older than their stamps, s.
     fn delay(&self) -> f64 {
-        self.shift + self.state.delay + self.state.skew * self.since.time_s
+        self.attitudes.shift() + self.state.delay + self.state.skew * self.since.time_s
     }
 
     /// The constant by the deformation as it is believed to be; its error is that of the states that it is made of.
@@ -226,7 +210,7 @@ impl Matching<STATES, 3> for Quaternion {
         transition.fixed_view_mut::<3, 3>(CONSTANT, BIAS).copy_from(&-by_bias);
         noise.fixed_view_mut::<3, 3>(CONSTANT, CONSTANT).fill_diagonal(walk);
         let mut prediction = Prediction { transition, noise };
-        if let Some(together) = self.together.filter(|_| !self.begun) {
+        if let Some(together) = self.attitudes.together().filter(|_| !self.begun) {
             self.begin_constant(&together, &mut prediction);
         }
         prediction
@@ -236,7 +220,7 @@ impl Matching<STATES, 3> for Quaternion {
         let mut matrix = SMatrix::<f64, 3, STATES>::zeros();
         let mut residual = Vector3::zeros();
         // without attitudes of one moment there is nothing to compare
-        if let Some(together) = self.together.filter(|_| self.begun) {
+        if let Some(together) = self.attitudes.together().filter(|_| self.begun) {
             residual = self.state.residual(&together);
             matrix.fixed_view_mut::<3, 3>(0, STATIC).fill_with_identity();
             matrix.fixed_view_mut::<3, 3>(0, FLEXURE).fill_with_identity();
@@ -248,16 +232,11 @@ impl Matching<STATES, 3> for Quaternion {
 
     fn inject(&mut self, error: &SVector<f64, STATES>) {
         self.state = self.state.moved(error);
-        if self.options.delay.retimed && self.state.delay.abs() > REST_S {
-            let shift = (self.shift + self.state.delay).clamp(-LONGEST_S, LONGEST_S);
-            self.state.delay += self.shift - shift;
-            self.shift = shift;
-            self.together = self.attitudes.together(shift);
-        }
+        self.attitudes.absorb(&mut self.state.delay);
     }
 
     fn residual_after(&self, error: &SVector<f64, STATES>) -> Vector3<f64> {
-        let together = self.together.filter(|_| self.begun);
+        let together = self.attitudes.together().filter(|_| self.begun);
         together.map_or(Vector3::zeros(), |together| self.state.moved(error).residual(&together))
     }
 }
@@ -296,9 +275,7 @@ impl Model<STATES, 3> for Quaternion {
             grade: start.grade,
             flexure: start.flexure,
             state,
-            attitudes: Attitudes::new(ROOM),
-            shift: 0.0,
-            together: None,
+            attitudes: Retimed::new(options.delay.retimed),
             begun: false,
             since: Since::default(),
         };
@@ -307,27 +284,18 @@ impl Model<STATES, 3> for Quaternion {
 
     fn delayed(&mut self, lag: &Lag, p: &mut SMatrix<f64, STATES, STATES>) {
         if self.options.delay.sigma > 0.0 {
-            if self.options.delay.retimed {
-                self.shift = lag.delay.clamp(-LONGEST_S, LONGEST_S);
-            } else {
-                self.state.delay = lag.delay;
-            }
+            self.state.delay = lag.delay;
+            self.attitudes.absorb(&mut self.state.delay);
             p[(DELAY, DELAY)] = lag.sigma.powi(2);
         }
     }
 
     fn advance(&mut self, motion: &Motion) {
-        let mid = motion.a_m * Rot::<Main, Main>::exp(motion.dtheta_m * -0.5);
         if self.begun {
-            let drift = mid * (self.state.bias * motion.interval_s);
-            self.state.constant = (Rot::<MainStart, MainStart>::exp(drift) * self.state.constant).normalised();
+            self.state.constant = drifted(self.state.constant, self.state.bias, motion);
         }
-        let arw = self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2);
-        self.since.time_s += motion.interval_s;
-        self.since.by_bias += mid.matrix() * motion.interval_s;
-        self.since.walk += arw * motion.interval_s + motion.disturbance.powi(2);
-        self.attitudes.push(motion);
-        self.together = self.attitudes.together(self.shift);
+        self.since.advance(motion, &self.grade);
+        self.attitudes.advance(motion);
     }
 
     fn set_flexure(&mut self, flexure: [Flexure; 3]) {
@@ -341,7 +309,7 @@ impl Model<STATES, 3> for Quaternion {
         rate_rows.fixed_view_mut::<3, 3>(0, FLEXURE_RATE).fill_diagonal(-1.0);
         let mut rows = SMatrix::<f64, 3, STATES>::zeros();
         let mut noise = Matrix3::zeros();
-        let seen = match self.together.filter(|_| self.begun) {
+        let seen = match self.attitudes.together().filter(|_| self.begun) {
             Some(together) => {
                 let back = together.a_m.inverse().matrix();
                 rows.fixed_view_mut::<3, 3>(0, CONSTANT).copy_from(&back);
@@ -349,7 +317,7 @@ impl Model<STATES, 3> for Quaternion {
                 rows.set_column(DELAY, &-together.w_m.column());
                 rows.set_column(SKEW, &(-together.w_m.column() * self.since.time_s));
                 noise.fill_diagonal(self.since.walk);
-                self.state.seen(&together, self.delay() - self.shift)
+                self.state.seen(&together, self.delay() - self.attitudes.shift())
             }
             None => {
                 rows.copy_from(&static_rows);

@@ -17,6 +17,10 @@ pub const LONGEST_S: f64 = 1.0;
 const MARGIN_S: f64 = 0.2;
 /// A longer hole between two nodes is not bridged, s.
 const HOLE_S: f64 = 0.25;
+/// A rest of the delay beyond this goes into the shift, s.
+const REST_S: f64 = 1e-3;
+/// Room for the attitudes of units of up to 1000 Hz, so that nothing is allocated later.
+const ROOM: usize = 1280;
 /// Points of the polynomial.
 const POINTS: usize = 4;
 
@@ -38,6 +42,49 @@ struct Node {
     a_s: Rot<SubStart, Sub>,
 }
 
+/// Attitudes that a filter re-times by the delay as it is known.
+#[derive(Clone, Debug)]
+pub struct Retimed {
+    attitudes: Attitudes,
+    /// Whether a rest of the delay goes into the shift at all.
+    absorbs: bool,
+    shift: f64,
+    together: Option<Together>,
+}
+
+impl Retimed {
+    /// Without a shift so far.
+    pub fn new(absorbs: bool) -> Self {
+        Self { attitudes: Attitudes::new(ROOM), absorbs, shift: 0.0, together: None }
+    }
+
+    /// By how much the sub unit's stamps are taken to be late, s.
+    pub fn shift(&self) -> f64 {
+        self.shift
+    }
+
+    /// Both units at the last moment that both have felt.
+    pub fn together(&self) -> Option<Together> {
+        self.together
+    }
+
+    /// Takes in what both units felt.
+    pub fn advance(&mut self, motion: &Motion) {
+        self.attitudes.push(motion);
+        self.together = self.attitudes.together(self.shift);
+    }
+
+    /// Takes over the rest of the delay, if it is large enough and may be; what stays in the rest is left there.
+    pub fn absorb(&mut self, rest: &mut f64) {
+        if self.absorbs && rest.abs() > REST_S {
+            let shift = (self.shift + *rest).clamp(-LONGEST_S, LONGEST_S);
+            *rest -= shift - self.shift;
+            self.shift = shift;
+            self.together = self.attitudes.together(shift);
+        }
+    }
+}
+
 /// The attitudes of the last second.
 #[derive(Clone, Debug)]
 pub struct Attitudes {
@@ -45,7 +92,7 @@ pub struct Attitudes {
 }
 
 impl Attitudes {
-    /// Room for units of so many samples a second, so that nothing is allocated later.
+    /// Room for so many.
     pub fn new(room: usize) -> Self {
         Self { nodes: VecDeque::with_capacity(room) }
     }

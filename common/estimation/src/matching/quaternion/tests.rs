@@ -23,7 +23,8 @@ fn start() -> Start {
 /// A model that has come to step `k` of a voyage, at the truth.
 fn at_truth(voyage: &Voyage, shift: f64, k: usize) -> Quaternion {
     let (mut model, _) = Quaternion::begin(&Options { delay: RETIMED, ..Options::default() }, &start());
-    model.shift = shift;
+    let mut known = shift;
+    model.attitudes.absorb(&mut known);
     (1..=k).for_each(|k| model.advance(&voyage.motion(k)));
     let moment = k as f64 * STEP_S - voyage.delay_s.max(0.0);
     let (theta, rate) = voyage.theta(moment);
@@ -125,11 +126,12 @@ fn the_noise_is_the_integral_of_the_densities() {
 fn the_constant_begins_with_the_error_of_what_it_is_made_of() {
     let voyage = voyage(0.2);
     let (mut model, p) = Quaternion::begin(&Options { delay: RETIMED, ..Options::default() }, &start());
-    model.shift = 0.2;
+    let mut known = 0.2;
+    model.attitudes.absorb(&mut known);
     for k in 1..=10 {
         model.advance(&voyage.motion(k));
     }
-    assert!(model.together.is_none(), "the main unit's attitude before the start is not known");
+    assert!(model.attitudes.together().is_none(), "the main unit's attitude before the start is not known");
     assert_eq!(model.observe().matrix.amax(), 0.0);
     (11..=40).for_each(|k| model.advance(&voyage.motion(k)));
     let Prediction { transition, noise } = model.propagate();
@@ -157,9 +159,9 @@ fn a_rest_beyond_a_millisecond_is_re_timed_and_nothing_else_moves() {
     let mut error = SVector::<f64, STATES>::zeros();
     error[DELAY] = 1e-9;
     model.inject(&error);
-    assert!(model.state.delay.abs() < 1e-15 && (model.shift - 0.03).abs() < 2e-9);
+    assert!(model.state.delay.abs() < 1e-15 && (model.attitudes.shift() - 0.03).abs() < 2e-9);
     assert!(
         (model.observe().residual - before).norm() < 0.5 * ARCSEC && model.observe().residual.norm() < 0.01 * ARCSEC
     );
-    assert_eq!(model.view().delay.map(|(value, _)| value), Some(model.shift));
+    assert_eq!(model.view().delay.map(|(value, _)| value), Some(model.attitudes.shift() + model.state.delay));
 }
