@@ -7,10 +7,13 @@ use estimation::align::Registrar;
 use estimation::estimator::{self, MakeRegister, Matched, MatchedSettings, So3Estimator};
 use estimation::evaluate::{Deviations, Evaluate};
 use estimation::filter::Filter;
+use estimation::filter::correntropy::Kernel;
+use estimation::filter::predictive::Weight;
 use estimation::identify::{self, Fixed, Windowed};
 use estimation::matching::exact_attitude::ExactAttitude;
 use estimation::matching::rate::{self, RateMatching};
 use estimation::matching::residual_attitude::ResidualAttitude;
+use estimation::matching::rodrigues::{self, RodriguesMatching};
 use estimation::matching::small_angle::SmallAngle;
 use estimation::matching::{self, Model, angles, so3};
 use estimation::synchronise::{self, Synchroniser, Unit};
@@ -42,7 +45,18 @@ pub fn estimator(configuration: &Configuration, area: usize) -> Box<dyn Estimato
         MatchingMethod::ResidualAttitude => matched::<ResidualAttitude, { angles::STATES }, 3>(configuration, area, ()),
         MatchingMethod::SmallAngle => matched::<SmallAngle, { angles::STATES }, 3>(configuration, area, ()),
         MatchingMethod::ExactAttitude => matched::<ExactAttitude, { angles::STATES }, 3>(configuration, area, ()),
+        MatchingMethod::Rodrigues => rodrigues(configuration, area, rodrigues::Output::Chain),
+        MatchingMethod::RodriguesPrinted => rodrigues(configuration, area, rodrigues::Output::Sum),
     }
+}
+
+fn rodrigues(configuration: &Configuration, area: usize, output: rodrigues::Output) -> Box<dyn Estimator> {
+    let dynamic_lever_arm = configuration.areas[area].estimator.dynamic_lever_arm;
+    matched::<RodriguesMatching, { rodrigues::STATES }, { rodrigues::ROWS }>(
+        configuration,
+        area,
+        rodrigues::Options { output, dynamic_lever_arm },
+    )
 }
 
 /// An estimator by any matching model.
@@ -59,10 +73,7 @@ fn matched<M: Model<N, K> + 'static, const N: usize, const K: usize>(
         RegistrationMethod::Motion => Some(|told| Box::new(Registrar::new(told.grade.scale_variance()))),
         RegistrationMethod::Installation => None,
     };
-    let filter = match area.estimator.filter {
-        FilterMethod::Kalman => Filter::Kalman,
-        FilterMethod::Unscented => Filter::Unscented,
-    };
+    let filter = filter(area.estimator.filter);
     let evaluation: Box<dyn Evaluate> = match area.estimator.range {
         RangeMethod::Normal => Box::new(Deviations(1.96)),
         RangeMethod::Naive => Box::new(Deviations(3.0)),
@@ -78,6 +89,21 @@ fn matched<M: Model<N, K> + 'static, const N: usize, const K: usize>(
         },
         evaluation,
     ))
+}
+
+fn filter(method: FilterMethod) -> Filter {
+    match method {
+        FilterMethod::Kalman => Filter::Kalman,
+        FilterMethod::Unscented => Filter::Unscented,
+        FilterMethod::Correntropy => Filter::Correntropy(Kernel::BY_NOISE),
+        FilterMethod::CorrentropyInnovation => Filter::Correntropy(Kernel::BY_INNOVATION),
+        FilterMethod::Predictive => Filter::Predictive(Weight::LITERAL, None),
+        FilterMethod::PredictiveWeighted => Filter::Predictive(Weight::HEAVY, None),
+        FilterMethod::PredictiveBayes => Filter::Predictive(Weight::Bayes, None),
+        FilterMethod::Idam => Filter::Predictive(Weight::LITERAL, Some(Kernel::BY_NOISE)),
+        FilterMethod::IdamWeighted => Filter::Predictive(Weight::HEAVY, Some(Kernel::BY_NOISE)),
+        FilterMethod::IdamBayes => Filter::Predictive(Weight::Bayes, Some(Kernel::BY_NOISE)),
+    }
 }
 
 fn settings(configuration: &Configuration, area: usize) -> estimator::Settings {

@@ -8,7 +8,7 @@
 //!
 //! Corrections: the bracket of eq 40 has `+ A` outside the product; eq 41 lacks `dt`.
 //!
-//! [`Weight::Literal`] is `alpha = 1`: eq 39 is then the posterior of the interval's noise given a state that is KNOWN. The state is not, and the update
+//! With `alpha = 1`, [`Weight::LITERAL`], eq 39 is the posterior of the interval's noise given a state that is KNOWN. The state is not, and the update
 //! of eqs 50, 51 uses the same measurement again. So `D` takes most of each innovation and leaves nothing to slow states.
 //! [`Weight::Bayes`] puts the innovation's covariance `H P H^T + R` in the place of `R` in eq 39: then `D` is the noise's posterior
 //! mean under the uncertain state. The measurement is still used twice, but `D` takes only the noise's own share of the innovation.
@@ -25,6 +25,13 @@ pub enum Weight {
     },
     /// The innovation has the covariance `H P H^T + R`, and `A = dt Q^-1`.
     Bayes,
+}
+
+impl Weight {
+    /// The paper's reading.
+    pub const LITERAL: Self = Self::Literal { alpha: 1.0 };
+    /// So heavy that little is compensated.
+    pub const HEAVY: Self = Self::Literal { alpha: 100.0 };
 }
 
 /// By how much the state moves for the predicted error of the model. `p`: covariance before the measurement; `driven`: what the last
@@ -81,7 +88,7 @@ mod tests {
         let moved = compensation(Weight::Bayes, &p, &driven, &z, &h, &r).expect("regular");
         let innovation = (h * p * h.transpose() + r).try_inverse().expect("regular");
         assert!((moved - driven * h.transpose() * innovation * z).norm() < 1e-12);
-        let known = compensation(Weight::Literal { alpha: 1.0 }, &p, &driven, &z, &h, &r).expect("regular");
+        let known = compensation(Weight::LITERAL, &p, &driven, &z, &h, &r).expect("regular");
         assert!(known.norm() > 2.0 * moved.norm());
     }
 
@@ -89,7 +96,7 @@ mod tests {
     fn numbers_that_are_none_give_none() {
         let (g, q, h, r, _) = case();
         let driven = g * q * g.transpose();
-        let weight = Weight::Literal { alpha: 1.0 };
+        let weight = Weight::LITERAL;
         assert!(compensation(weight, &driven, &driven, &Vector2::new(f64::NAN, 0.0), &h, &r).is_none());
     }
 }

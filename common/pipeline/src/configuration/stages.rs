@@ -33,6 +33,10 @@ pub enum MatchingMethod {
     SmallAngle,
     /// Attitudes without registration, as they are, 18 states.
     ExactAttitude,
+    /// Velocities and rates in inertial space, with Rodrigues parameters, 24 states.
+    Rodrigues,
+    /// The same, with the deformation published as the sum of static part and flexure.
+    RodriguesPrinted,
 }
 
 /// How the fast stage corrects its state.
@@ -44,6 +48,22 @@ pub enum FilterMethod {
     Kalman,
     /// Sigma points.
     Unscented,
+    /// Linear update, each value weighed by its residual in terms of its noise.
+    Correntropy,
+    /// Linear update, each value weighed by its residual in terms of the innovation's variance.
+    CorrentropyInnovation,
+    /// The model's error is predicted from the measurement given a known state, then comes the linear update.
+    Predictive,
+    /// The same with the model's error weighed a hundred times more.
+    PredictiveWeighted,
+    /// The same with the model's error predicted under the uncertain state.
+    PredictiveBayes,
+    /// Predictive, then weighed by residuals in terms of the noise.
+    Idam,
+    /// The same with the model's error weighed a hundred times more.
+    IdamWeighted,
+    /// The same with the model's error predicted under the uncertain state.
+    IdamBayes,
 }
 
 /// What the published range is made of.
@@ -62,7 +82,9 @@ impl MatchingMethod {
     pub fn registrations(self) -> &'static [RegistrationMethod] {
         match self {
             Self::So3 => &[RegistrationMethod::Motion],
-            Self::Rate => &[RegistrationMethod::Motion, RegistrationMethod::Installation],
+            Self::Rate | Self::Rodrigues | Self::RodriguesPrinted => {
+                &[RegistrationMethod::Motion, RegistrationMethod::Installation]
+            }
             Self::ResidualAttitude => &[RegistrationMethod::Motion, RegistrationMethod::Installation],
             Self::SmallAngle | Self::ExactAttitude => &[RegistrationMethod::Installation],
         }
@@ -75,6 +97,18 @@ impl MatchingMethod {
             Self::ResidualAttitude | Self::SmallAngle | Self::ExactAttitude => {
                 &[FilterMethod::Kalman, FilterMethod::Unscented]
             }
+            Self::Rodrigues | Self::RodriguesPrinted => &[
+                FilterMethod::Kalman,
+                FilterMethod::Unscented,
+                FilterMethod::Correntropy,
+                FilterMethod::CorrentropyInnovation,
+                FilterMethod::Predictive,
+                FilterMethod::PredictiveWeighted,
+                FilterMethod::PredictiveBayes,
+                FilterMethod::Idam,
+                FilterMethod::IdamWeighted,
+                FilterMethod::IdamBayes,
+            ],
         }
     }
 
@@ -82,9 +116,12 @@ impl MatchingMethod {
     pub fn ranges(self) -> &'static [RangeMethod] {
         match self {
             Self::So3 => &[RangeMethod::Normal],
-            Self::Rate | Self::ResidualAttitude | Self::SmallAngle | Self::ExactAttitude => {
-                &[RangeMethod::Normal, RangeMethod::Naive]
-            }
+            Self::Rate
+            | Self::ResidualAttitude
+            | Self::SmallAngle
+            | Self::ExactAttitude
+            | Self::Rodrigues
+            | Self::RodriguesPrinted => &[RangeMethod::Normal, RangeMethod::Naive],
         }
     }
 }
@@ -116,6 +153,8 @@ pub struct EstimatorSettings {
     /// Random walk of the static part, for models without a rate of it, rad/sqrt(s).
     #[serde(rename = "static_walk_arcsec_per_sqrt_h", deserialize_with = "quantity::static_walk_arcsec_per_sqrt_h")]
     pub static_walk: f64,
+    /// Whether the lever arm bends with the deck, for models that use accelerometers.
+    pub dynamic_lever_arm: bool,
 }
 
 impl Default for EstimatorSettings {
@@ -129,6 +168,7 @@ impl Default for EstimatorSettings {
             registration_s: 20.0,
             static_rate_noise: 1e-4 * unit::ARCSEC * unit::ARCSEC,
             static_walk: 0.0,
+            dynamic_lever_arm: true,
         }
     }
 }
