@@ -33,6 +33,13 @@ impl Flexure {
         Self { mu: b, b, sigma: most }
     }
 
+    /// One that is `factor` times as large with the same driving noise: critically damped and slower.
+    pub fn widened(self, factor: f64) -> Self {
+        let sigma = self.sigma * factor;
+        let b = (self.density() / (4.0 * sigma * sigma)).cbrt();
+        Self { mu: b, b, sigma }
+    }
+
     /// Density of the driving noise, rad^2/s^3.
     pub fn density(&self) -> f64 {
         4.0 * self.mu * self.b * self.b * self.sigma * self.sigma
@@ -129,6 +136,16 @@ mod tests {
             for t in [1e-3, 0.01, 0.1, 1.0, 20.0] {
                 assert!((m.transition(t) - (a * t).exp()).norm() < 1e-12 * (1.0 + m.transition(t).norm()), "{m:?} {t}");
             }
+        }
+    }
+
+    #[test]
+    fn a_wider_flexure_is_driven_as_before() {
+        for m in CASES {
+            let wide = m.widened(4.0);
+            assert!(
+                (wide.density() / m.density() - 1.0).abs() < 1e-12 && wide.sigma == 4.0 * m.sigma && wide.mu == wide.b
+            );
         }
     }
 

@@ -1,7 +1,7 @@
 //! Any matching model with any filter: registration, propagation at each pair, an update at the filter's rate, an output at each pair.
 
 use super::adoption::Adoption;
-use super::{Settings, deck, row_major};
+use super::{REGISTRATION_DOUBT, Settings, deck, guess, row_major};
 use crate::Estimator;
 use crate::align::{Register, Registration};
 use crate::evaluate::{Evaluate, Evidence};
@@ -14,6 +14,9 @@ use nalgebra::{Matrix3, SMatrix};
 
 /// The flexure that is assumed while none is told or identified.
 const BROAD: Flexure = Flexure { mu: 0.3, b: 0.6, sigma: 10.0 * unit::ARCSEC };
+/// By how much larger a guessed flexure may be than its rate tells, as it would be if it were slower: too small a flexure is false
+/// knowledge for a model that also sees the angle.
+const WIDER: f64 = 4.0;
 /// A covariance beyond this (1 rad^2) says nothing of a rotation any more.
 const LOST: f64 = 1.0;
 /// Standard deviation of the total above which the solution is not offered for use, rad.
@@ -79,10 +82,10 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
     fn register(&mut self, pair: &ImuPair) {
         let time_ns = pair.header.time_ns;
         let area = &self.settings.area;
-        let (rotation, covariance) = match &mut self.registration {
+        let (rotation, covariance, broad) = match &mut self.registration {
             None => {
                 let Some(told) = area.installation else { return };
-                (told.rotation, Matrix3::identity() * told.sigma.powi(2))
+                (told.rotation, Matrix3::identity() * told.sigma.powi(2), [BROAD; 3])
             }
             Some(registration) => {
                 registration.add(pair);
@@ -90,11 +93,11 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
                 if waited_s < area.registration_s - 0.5 * area.interval_s {
                     return;
                 }
-                let Some(Registration { rotation, covariance, .. }) = registration.solve() else {
+                let Some(Registration { rotation, covariance, residual_rate, .. }) = registration.solve() else {
                     self.news |= Flags::UNOBSERVABLE;
                     return;
                 };
-                (rotation, covariance)
+                (rotation, covariance * REGISTRATION_DOUBT, guess(&residual_rate).map(|axis| axis.widened(WIDER)))
             }
         };
         if pair.flags.contains(Flags::GAP) {
@@ -104,7 +107,7 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
             grade: area.grade,
             accel: self.settings.accel,
             lever_arm: self.settings.lever_arm,
-            flexure: self.adoption.flexure().or(area.flexure).unwrap_or([BROAD; 3]),
+            flexure: self.adoption.flexure().or(area.flexure).unwrap_or(broad),
             rotation,
             covariance,
         };

@@ -9,9 +9,16 @@ pub use so3::So3Estimator;
 
 use crate::flexure::Flexure;
 use crate::matching::so3::Grade;
-use frames::{Main, Nav, Rot, Sub};
+use frames::{Main, Nav, Rot, Sub, unit};
 use messages::{FlexureParams, ImuPair, Solution};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
+
+/// The registration's covariance is widened: its windows see the flexure as if it were noise.
+const REGISTRATION_DOUBT: f64 = 9.0;
+/// The broad guess: damping and natural frequency, and how much wider than the residual rate the flexure may be.
+const GUESS: (f64, f64, f64) = (0.3, 0.6, 2.0);
+/// The least flexure of the broad guess.
+const LEAST_GUESS: f64 = 1.0 * unit::ARCSEC;
 
 /// A surveyed installation to fall back to.
 #[derive(Clone, Copy, Debug)]
@@ -59,4 +66,10 @@ fn deck(solution: &mut Solution, pair: &ImuPair, deformation: Rot<Main, Sub>, co
         solution.deck = (ship * deformation).quaternion();
         solution.deck_sigma = std::array::from_fn(|i| (turned[i] + pair.ins_sigma[i].powi(2)).sqrt());
     }
+}
+
+/// The broad guess of the flexure from the relative rate that a constant rotation leaves.
+fn guess(residual_rate: &Vector3<f64>) -> [Flexure; 3] {
+    let (mu, b, wider) = GUESS;
+    std::array::from_fn(|axis| Flexure { mu, b, sigma: (wider * residual_rate[axis] / b).max(LEAST_GUESS) })
 }

@@ -1,11 +1,10 @@
 //! The fast stage: registration by motion, then the filter of [`crate::matching::so3`], with an output at every pair.
 
 use super::adoption::Adoption;
-use super::{Settings, deck, row_major};
+use super::{REGISTRATION_DOUBT, Settings, deck, guess, row_major};
 use crate::Estimator;
 use crate::align::{Register, Registrar, Registration};
 use crate::filter::{kalman, symmetrise};
-use crate::flexure::Flexure;
 use crate::matching::Matching;
 use crate::matching::so3::{Covariance, Increment, STATES, So3, place};
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
@@ -18,16 +17,10 @@ const REGISTER_AGAIN_NS: i64 = 10_000_000_000;
 const LEAST_REGISTRATION_S: f64 = 5.0;
 /// A registration as good as this is not waited for any longer.
 const GOOD_REGISTRATION: f64 = 0.5 * unit::DEGREE;
-/// The registration's covariance is widened: its windows see the flexure as if it were noise.
-const REGISTRATION_DOUBT: f64 = 9.0;
 /// Standard deviation of the static part's rate at the start, rad/s.
 const STATIC_RATE_SIGMA: f64 = 0.5 * unit::ARCSEC;
 /// Gyro biases may exceed their specification.
 const BIAS_DOUBT: f64 = 3.0;
-/// The broad guess: damping and natural frequency, and how much wider than the residual rate the flexure may be.
-const GUESS: (f64, f64, f64) = (0.3, 0.6, 2.0);
-/// The least flexure of the broad guess.
-const LEAST_GUESS: f64 = 1.0 * unit::ARCSEC;
 /// The published range in standard deviations: 95 % of a normal error.
 const RANGE: f64 = 1.96;
 /// A covariance beyond this (1 rad^2) says nothing of a rotation any more.
@@ -318,10 +311,4 @@ impl Running {
         let diagonal = self.p.diagonal();
         (diagonal.iter().all(|v| v.is_finite() && *v >= 0.0) && self.so3.deformation().log().is_finite()).then_some(())
     }
-}
-
-/// The broad guess of the flexure from the relative rate that a constant rotation leaves.
-fn guess(residual_rate: &Vector3<f64>) -> [Flexure; 3] {
-    let (mu, b, wider) = GUESS;
-    std::array::from_fn(|axis| Flexure { mu, b, sigma: (wider * residual_rate[axis] / b).max(LEAST_GUESS) })
 }

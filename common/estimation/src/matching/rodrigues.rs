@@ -412,7 +412,8 @@ impl Model<STATES, ROWS> for RodriguesMatching {
         View {
             deformation,
             rows,
-            noise: Matrix3::identity() * (arw * self.pending.time_s + self.pending.variance),
+            noise: Matrix3::identity()
+                * (arw * self.pending.time_s + self.pending.variance + self.grade.triad_variance()),
             static_part,
             static_rows,
             rate: Vec3::from_column(rate),
