@@ -19,8 +19,12 @@ macro_rules! presets {
 
 presets! {
     "error_range_strong",
+    "error_range_strong_coherence",
+    "error_range_strong_naive",
     "error_range_strong_turns",
     "error_range_weak",
+    "error_range_weak_coherence",
+    "error_range_weak_naive",
     "error_range_weak_turns",
     "idam",
     "idam_impulsive",
@@ -42,6 +46,8 @@ presets! {
     "q_nnkf",
     "tufts_kumaresan",
     "tufts_kumaresan_band_limited",
+    "tufts_kumaresan_decimated",
+    "tufts_kumaresan_whittle",
 }
 
 /// Name and text of each.

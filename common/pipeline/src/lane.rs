@@ -5,11 +5,12 @@ use crate::configuration::{
 };
 use estimation::align::Registrar;
 use estimation::estimator::{self, MakeRegister, Matched, MatchedSettings, So3Estimator};
-use estimation::evaluate::{Deviations, Evaluate};
+use estimation::evaluate::{Coherence, Deviations, ErrorRange, Evaluate};
 use estimation::filter::Filter;
 use estimation::filter::correntropy::Kernel;
 use estimation::filter::predictive::Weight;
 use estimation::identify::{self, Fixed, Windowed};
+use estimation::matching::attitude_dcm::{self, AttitudeDcm};
 use estimation::matching::exact_attitude::ExactAttitude;
 use estimation::matching::rate::{self, RateMatching};
 use estimation::matching::residual_attitude::ResidualAttitude;
@@ -41,6 +42,11 @@ pub fn estimator(configuration: &Configuration, area: usize) -> Box<dyn Estimato
             configuration,
             area,
             rate::Options { static_walk: told.static_walk * told.static_walk },
+        ),
+        MatchingMethod::AttitudeDcm => matched::<AttitudeDcm, { attitude_dcm::STATES }, 3>(
+            configuration,
+            area,
+            attitude_dcm::Options { noise: told.attitude_noise, static_walk: told.static_walk * told.static_walk },
         ),
         MatchingMethod::ResidualAttitude => matched::<ResidualAttitude, { angles::STATES }, 3>(configuration, area, ()),
         MatchingMethod::SmallAngle => matched::<SmallAngle, { angles::STATES }, 3>(configuration, area, ()),
@@ -77,6 +83,8 @@ fn matched<M: Model<N, K> + 'static, const N: usize, const K: usize>(
     let evaluation: Box<dyn Evaluate> = match area.estimator.range {
         RangeMethod::Normal => Box::new(Deviations(1.96)),
         RangeMethod::Naive => Box::new(Deviations(3.0)),
+        RangeMethod::ErrorRange => Box::new(ErrorRange::new(area.estimator.range_factor)),
+        RangeMethod::Coherence => Box::new(Coherence::new(area.estimator.range_factor)),
     };
     Box::new(Matched::<M, N, K>::new(
         MatchedSettings {

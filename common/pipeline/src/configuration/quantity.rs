@@ -137,6 +137,8 @@ quantities! {
     stamp_jitter_us: 1e-6, 0.0, 1e5;
     range_deg_per_s: unit::DEGREE, 1.0, 1e5;
     range_g: unit::STANDARD_GRAVITY, 0.1, 1e4;
+    attitude_noise_arcsec: unit::ARCSEC, 1e-3, 36_000.0;
+    range_factor: 1.0, 0.0, 1e3;
     static_walk_arcsec_per_sqrt_h: unit::ARCSEC / 60.0, 0.0, 1e4;
     static_rate_noise_arcsec2_per_s3: unit::ARCSEC * unit::ARCSEC, 0.0, 1e6;
 

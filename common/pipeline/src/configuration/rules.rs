@@ -1,7 +1,7 @@
 //! Rules that more than one key takes part in.
 
 use super::document::Document;
-use super::{Area, Configuration, ConfigurationError, RegistrationMethod, Source};
+use super::{Area, Configuration, ConfigurationError, RangeMethod, RegistrationMethod, Source};
 use std::path::Path;
 
 /// Makes the paths of the recordings absolute and checks the whole; all faults are reported.
@@ -101,6 +101,11 @@ fn methods(areas: &[Area], document: &Document, faults: &mut Vec<ConfigurationEr
         part("registration", matching.registrations().contains(&told.registration), names_of(matching.registrations()));
         part("filter", matching.filters().contains(&told.filter), names_of(matching.filters()));
         part("range", matching.ranges().contains(&told.range), names_of(matching.ranges()));
+        let factor = format!("area[{i}].estimator.range_factor");
+        if document.has(&factor) && !matches!(told.range, RangeMethod::ErrorRange | RangeMethod::Coherence) {
+            let message = "goes with range = \"error_range\" or \"coherence\" only";
+            faults.push(document.fault(&factor, message));
+        }
         if told.registration == RegistrationMethod::Installation && area.installation.is_none() {
             let message = "\"installation\" needs the table `installation`";
             faults.push(document.fault(&format!("area[{i}].estimator.registration"), message));

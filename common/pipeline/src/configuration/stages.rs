@@ -37,6 +37,8 @@ pub enum MatchingMethod {
     Rodrigues,
     /// The same, with the deformation published as the sum of static part and flexure.
     RodriguesPrinted,
+    /// Attitudes by direction cosines, 21 states.
+    AttitudeDcm,
 }
 
 /// How the fast stage corrects its state.
@@ -75,6 +77,10 @@ pub enum RangeMethod {
     Normal,
     /// Three standard deviations of the filter, as papers do.
     Naive,
+    /// By the covariance of flexure rate and static part, with the coefficient F of 004.
+    ErrorRange,
+    /// By an assumed coherence of flexure and ship.
+    Coherence,
 }
 
 impl MatchingMethod {
@@ -82,7 +88,7 @@ impl MatchingMethod {
     pub fn registrations(self) -> &'static [RegistrationMethod] {
         match self {
             Self::So3 => &[RegistrationMethod::Motion],
-            Self::Rate | Self::Rodrigues | Self::RodriguesPrinted => {
+            Self::Rate | Self::AttitudeDcm | Self::Rodrigues | Self::RodriguesPrinted => {
                 &[RegistrationMethod::Motion, RegistrationMethod::Installation]
             }
             Self::ResidualAttitude => &[RegistrationMethod::Motion, RegistrationMethod::Installation],
@@ -93,7 +99,7 @@ impl MatchingMethod {
     /// The filters that have a meaning with this matching.
     pub fn filters(self) -> &'static [FilterMethod] {
         match self {
-            Self::So3 | Self::Rate => &[FilterMethod::Kalman],
+            Self::So3 | Self::Rate | Self::AttitudeDcm => &[FilterMethod::Kalman],
             Self::ResidualAttitude | Self::SmallAngle | Self::ExactAttitude => {
                 &[FilterMethod::Kalman, FilterMethod::Unscented]
             }
@@ -116,12 +122,7 @@ impl MatchingMethod {
     pub fn ranges(self) -> &'static [RangeMethod] {
         match self {
             Self::So3 => &[RangeMethod::Normal],
-            Self::Rate
-            | Self::ResidualAttitude
-            | Self::SmallAngle
-            | Self::ExactAttitude
-            | Self::Rodrigues
-            | Self::RodriguesPrinted => &[RangeMethod::Normal, RangeMethod::Naive],
+            _ => &[RangeMethod::Normal, RangeMethod::Naive, RangeMethod::ErrorRange, RangeMethod::Coherence],
         }
     }
 }
@@ -138,6 +139,9 @@ pub struct EstimatorSettings {
     pub filter: FilterMethod,
     /// What the published range is made of.
     pub range: RangeMethod,
+    /// What the range is multiplied by about each axis, if it takes a factor: F of 004 (s^-1/2), or the coherence.
+    #[serde(deserialize_with = "quantity::range_factor")]
+    pub range_factor: [f64; 3],
     /// How often the filter takes a measurement, Hz.
     #[serde(deserialize_with = "quantity::filter_hz")]
     pub filter_hz: f64,
@@ -155,6 +159,9 @@ pub struct EstimatorSettings {
     pub static_walk: f64,
     /// Whether the lever arm bends with the deck, for models that use accelerometers.
     pub dynamic_lever_arm: bool,
+    /// White noise of the attitude that is measured by direction cosines, rad.
+    #[serde(rename = "attitude_noise_arcsec", deserialize_with = "quantity::attitude_noise_arcsec")]
+    pub attitude_noise: f64,
 }
 
 impl Default for EstimatorSettings {
@@ -164,11 +171,13 @@ impl Default for EstimatorSettings {
             matching: MatchingMethod::So3,
             filter: FilterMethod::Kalman,
             range: RangeMethod::Normal,
+            range_factor: [1.0; 3],
             filter_hz: 10.0,
             registration_s: 20.0,
             static_rate_noise: 1e-4 * unit::ARCSEC * unit::ARCSEC,
             static_walk: 0.0,
             dynamic_lever_arm: true,
+            attitude_noise: 2.0 * unit::ARCSEC,
         }
     }
 }
