@@ -9,6 +9,7 @@
 //! `config/papers` and a line in [`presets`].
 
 mod data;
+mod error_range;
 mod fault;
 mod figure;
 mod idam;
@@ -18,6 +19,7 @@ mod row;
 mod statistics;
 mod study;
 mod track;
+mod tufts_kumaresan;
 mod verdict;
 
 pub use data::{Data, pairs, run, run_together};
@@ -43,7 +45,11 @@ pub struct Experiment {
 }
 
 /// All papers, in the order of their output.
-pub const EXPERIMENTS: [Experiment; 1] = [Experiment { name: "idam", title: idam::TITLE, studies: idam::studies }];
+pub const EXPERIMENTS: [Experiment; 3] = [
+    Experiment { name: "idam", title: idam::TITLE, studies: idam::studies },
+    Experiment { name: "tufts-kumaresan", title: tufts_kumaresan::TITLE, studies: tufts_kumaresan::studies },
+    Experiment { name: "error-range", title: error_range::TITLE, studies: error_range::studies },
+];
 
 impl Experiment {
     /// How much there is to do, in the unit of [`Watch::done`].

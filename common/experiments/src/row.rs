@@ -49,15 +49,16 @@ pub struct Row {
 impl Claim {
     /// Beside the mean of a figure over the trials.
     pub fn mean(self, values: &[f64]) -> Row {
-        self.row(mean(values), values)
+        self.figure(mean(values), values)
     }
 
     /// Beside the root mean square of a figure over the trials.
     pub fn rms(self, values: &[f64]) -> Row {
-        self.row(rms(values), values)
+        self.figure(rms(values), values)
     }
 
-    fn row(self, ours: f64, values: &[f64]) -> Row {
+    /// Beside another figure of the trials, whose spread is that of `values`.
+    pub fn figure(self, ours: f64, values: &[f64]) -> Row {
         let (spread, trials) = (spread(values), values.len());
         let verdict = Verdict::of(ours, spread, trials, &self.paper);
         Row { claim: self, ours, spread, trials, verdict }

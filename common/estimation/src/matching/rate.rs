@@ -213,6 +213,15 @@ mod tests {
     }
 
     #[test]
+    fn without_the_rate_of_the_flexure_the_residual_is_of_its_size() {
+        // 004 eq 19 as printed has nothing in the place of the rate
+        let mut model = at_truth(Vec3::new(60.0, -40.0, 80.0) * ARCSEC, 137);
+        let rate = model.three(RATE).norm();
+        model.x.fixed_rows_mut::<3>(RATE).fill(0.0);
+        assert!(model.observe().residual.norm() > 0.9 * rate);
+    }
+
+    #[test]
     fn the_measurement_matrix_is_the_derivative() {
         matrix_is_the_derivative(&at_truth(Vec3::new(1e-4, 2e-4, -1e-4), 137), &SVector::repeat(1e-6), 1e-9);
     }
