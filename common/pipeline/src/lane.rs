@@ -3,7 +3,7 @@
 use crate::configuration::{
     Accel, Area, Configuration, FilterMethod, Gyro, IdentifierMethod, MatchingMethod, RangeMethod, RegistrationMethod,
 };
-use estimation::align::Registrar;
+use estimation::align::{DelayRegistrar, Registrar};
 use estimation::estimator::{self, MakeRegister, Matched, MatchedSettings, So3Estimator};
 use estimation::evaluate::{Coherence, Deviations, ErrorRange, Evaluate};
 use estimation::filter::Filter;
@@ -12,6 +12,8 @@ use estimation::filter::predictive::Weight;
 use estimation::identify::{self, Fixed, Windowed};
 use estimation::matching::attitude_dcm::{self, AttitudeDcm};
 use estimation::matching::exact_attitude::ExactAttitude;
+use estimation::matching::quaternion::{self, DelayOptions, Quaternion};
+use estimation::matching::quaternion_network::{self, QuaternionNetwork};
 use estimation::matching::rate::{self, RateMatching};
 use estimation::matching::residual_attitude::ResidualAttitude;
 use estimation::matching::rodrigues::{self, RodriguesMatching};
@@ -36,6 +38,7 @@ pub fn synchroniser(configuration: &Configuration, area: usize) -> Synchroniser 
 /// The estimator of an area.
 pub fn estimator(configuration: &Configuration, area: usize) -> Box<dyn Estimator> {
     let told = &configuration.areas[area].estimator;
+    let delay = told.delay.map_or(DelayOptions::default(), |delay| delay.options());
     match told.matching {
         MatchingMethod::So3 => Box::new(So3Estimator::new(settings(configuration, area))),
         MatchingMethod::Rate => matched::<RateMatching, { rate::STATES }, 3>(
@@ -53,6 +56,22 @@ pub fn estimator(configuration: &Configuration, area: usize) -> Box<dyn Estimato
         MatchingMethod::ExactAttitude => matched::<ExactAttitude, { angles::STATES }, 3>(configuration, area, ()),
         MatchingMethod::Rodrigues => rodrigues(configuration, area, rodrigues::Output::Chain),
         MatchingMethod::RodriguesPrinted => rodrigues(configuration, area, rodrigues::Output::Sum),
+        MatchingMethod::Quaternion => quaternion(configuration, area, false, DelayOptions::default()),
+        MatchingMethod::QuaternionDelay => {
+            quaternion(configuration, area, false, told.delay.unwrap_or_default().options())
+        }
+        MatchingMethod::QuaternionWalk => quaternion(configuration, area, true, delay),
+        MatchingMethod::QuaternionNetwork => {
+            let network = told.network.unwrap_or_default();
+            let options = quaternion_network::Options {
+                input: network.input.input(),
+                weight_walk: network.weight_walk,
+                offset_walk: network.offset_walk,
+                seed: network.seed,
+                delay,
+            };
+            matched::<QuaternionNetwork, { quaternion_network::STATES }, 3>(configuration, area, options)
+        }
     }
 }
 
@@ -63,6 +82,12 @@ fn rodrigues(configuration: &Configuration, area: usize, output: rodrigues::Outp
         area,
         rodrigues::Options { output, dynamic_lever_arm },
     )
+}
+
+fn quaternion(configuration: &Configuration, area: usize, rigid: bool, delay: DelayOptions) -> Box<dyn Estimator> {
+    let walk = configuration.areas[area].estimator.static_walk;
+    let options = quaternion::Options { static_walk: walk * walk, rigid, delay };
+    matched::<Quaternion, { quaternion::STATES }, 3>(configuration, area, options)
 }
 
 /// An estimator by any matching model.
@@ -77,6 +102,7 @@ fn matched<M: Model<N, K> + 'static, const N: usize, const K: usize>(
     let both = |figure: fn(&Accel) -> f64| main.as_ref().map_or(0.0, figure).hypot(sub.as_ref().map_or(0.0, figure));
     let registration: Option<MakeRegister> = match area.estimator.registration {
         RegistrationMethod::Motion => Some(|told| Box::new(Registrar::new(told.grade.scale_variance()))),
+        RegistrationMethod::Delay => Some(|_| Box::new(DelayRegistrar::new())),
         RegistrationMethod::Installation => None,
     };
     let filter = filter(area.estimator.filter);

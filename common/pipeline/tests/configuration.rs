@@ -318,7 +318,9 @@ fn a_wrong_type_is_told_with_the_right_one() {
     );
     assert_eq!(
         message_with("[area.estimator]\nmatching = \"ekf\""),
-        "ship.toml:10: area[0].estimator.matching = \"ekf\": must be one of \"so3\", \"rate\""
+        "ship.toml:10: area[0].estimator.matching = \"ekf\": must be one of \"so3\", \"rate\", \"residual_attitude\", \
+         \"small_angle\", \"exact_attitude\", \"rodrigues\", \"rodrigues_printed\", \"quaternion\", \"quaternion_delay\", \"quaternion_walk\", \
+         \"quaternion_network\""
     );
     assert_eq!(
         message_with("[simulation]\nvelocity_follows_heading = 1"),
@@ -485,4 +487,18 @@ fn every_method_of_identification_can_be_told() {
     let flexure = "flexure = { mu_per_s = [1, 1, 1], b_rad_per_s = [1, 1, 1], sigma_arcsec = [1, 1, 1] }";
     let wrong = message_with(&format!("[area.identifier]\nmethod = \"whittle\"\n{flexure}"));
     assert!(wrong.contains("not with \"whittle\""), "{wrong}");
+}
+
+#[test]
+fn delay_and_network_go_with_the_matchings_that_have_them() {
+    let faults = [
+        ("matching = \"quaternion\"\ndelay = {}", "delay", "no delay"),
+        ("matching = \"quaternion_delay\"\nnetwork = {}", "network", "no network"),
+    ];
+    for (estimator, key, others) in faults {
+        let message = message_with(&format!("[area.estimator]\n{estimator}"));
+        assert!(message.contains(&format!("estimator.{key}")) && message.ends_with(others), "{message}");
+    }
+    let message = message_with("[area.estimator]\nmatching = \"quaternion\"\nregistration = \"delay\"");
+    assert!(message.ends_with("which goes with \"motion\", \"installation\""), "{message}");
 }

@@ -11,8 +11,8 @@ pub mod quaternion;
 pub mod quaternion_network;
 pub mod rate;
 pub mod residual_attitude;
-pub mod rodrigues;
 pub mod retiming;
+pub mod rodrigues;
 pub mod small_angle;
 pub mod so3;
 

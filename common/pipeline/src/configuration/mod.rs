@@ -6,6 +6,7 @@ mod document;
 mod error;
 mod flexure;
 mod instrument;
+mod model_free;
 mod quantity;
 mod rules;
 mod scenario;
@@ -19,6 +20,7 @@ pub use area::{Area, Installation, MainUnit};
 pub use area_simulation::AreaSimulation;
 pub use error::ConfigurationError;
 pub use instrument::{Accel, Gyro, Source};
+pub use model_free::{DelaySettings, NetworkInput, NetworkSettings};
 pub use simulation::{Ins, Simulation, Wire};
 pub use stages::{
     EstimatorSettings, FilterMethod, IdentifierMethod, IdentifierSettings, MatchingMethod, RangeMethod,

@@ -139,6 +139,8 @@ quantities! {
     range_g: unit::STANDARD_GRAVITY, 0.1, 1e4;
     attitude_noise_arcsec: unit::ARCSEC, 1e-3, 36_000.0;
     range_factor: 1.0, 0.0, 1e3;
+    weight_walk_per_sqrt_s: 1.0, 0.0, 100.0;
+    offset_walk_arcsec_per_sqrt_s: unit::ARCSEC, 0.0, 1e4;
     static_walk_arcsec_per_sqrt_h: unit::ARCSEC / 60.0, 0.0, 1e4;
     static_rate_noise_arcsec2_per_s3: unit::ARCSEC * unit::ARCSEC, 0.0, 1e6;
 

@@ -100,6 +100,8 @@ fn methods(areas: &[Area], document: &Document, faults: &mut Vec<ConfigurationEr
         };
         part("registration", matching.registrations().contains(&told.registration), names_of(matching.registrations()));
         part("filter", matching.filters().contains(&told.filter), names_of(matching.filters()));
+        part("delay", told.delay.is_none() || matching.takes_delay(), "no delay".into());
+        part("network", told.network.is_none() || matching.takes_network(), "no network".into());
         part("range", matching.ranges().contains(&told.range), names_of(matching.ranges()));
         let factor = format!("area[{i}].estimator.range_factor");
         if document.has(&factor) && !matches!(told.range, RangeMethod::ErrorRange | RangeMethod::Coherence) {

@@ -1,6 +1,6 @@
 //! The settings of the two stages that serve an area.
 
-use super::{quantity, table};
+use super::{DelaySettings, NetworkSettings, quantity, table};
 use estimation::flexure::Flexure;
 use estimation::identify;
 use frames::unit;
@@ -16,6 +16,8 @@ pub enum RegistrationMethod {
     Motion,
     /// The configured installation is taken as it is.
     Installation,
+    /// From the motion, together with the sub unit's delay.
+    Delay,
 }
 
 /// What the fast stage compares.
@@ -39,6 +41,14 @@ pub enum MatchingMethod {
     RodriguesPrinted,
     /// Attitudes by direction cosines, 21 states.
     AttitudeDcm,
+    /// Attitudes and their constant, 15 states.
+    Quaternion,
+    /// The same with the delay, and its skew where one is told, as states.
+    QuaternionDelay,
+    /// The same with a random walk as all there is of the deformation; with the table `delay`, a delay too.
+    QuaternionWalk,
+    /// The same with a network as all there is of the deformation; with the table `delay`, a delay too.
+    QuaternionNetwork,
 }
 
 /// How the fast stage corrects its state.
@@ -93,6 +103,10 @@ impl MatchingMethod {
             }
             Self::ResidualAttitude => &[RegistrationMethod::Motion, RegistrationMethod::Installation],
             Self::SmallAngle | Self::ExactAttitude => &[RegistrationMethod::Installation],
+            Self::Quaternion => &[RegistrationMethod::Motion, RegistrationMethod::Installation],
+            Self::QuaternionDelay | Self::QuaternionWalk | Self::QuaternionNetwork => {
+                &[RegistrationMethod::Motion, RegistrationMethod::Installation, RegistrationMethod::Delay]
+            }
         }
     }
 
@@ -100,6 +114,9 @@ impl MatchingMethod {
     pub fn filters(self) -> &'static [FilterMethod] {
         match self {
             Self::So3 | Self::Rate | Self::AttitudeDcm => &[FilterMethod::Kalman],
+            Self::Quaternion | Self::QuaternionDelay | Self::QuaternionWalk | Self::QuaternionNetwork => {
+                &[FilterMethod::Kalman, FilterMethod::Unscented]
+            }
             Self::ResidualAttitude | Self::SmallAngle | Self::ExactAttitude => {
                 &[FilterMethod::Kalman, FilterMethod::Unscented]
             }
@@ -124,6 +141,16 @@ impl MatchingMethod {
             Self::So3 => &[RangeMethod::Normal],
             _ => &[RangeMethod::Normal, RangeMethod::Naive, RangeMethod::ErrorRange, RangeMethod::Coherence],
         }
+    }
+
+    /// Whether it can be told of a delay.
+    pub fn takes_delay(self) -> bool {
+        matches!(self, Self::QuaternionDelay | Self::QuaternionWalk | Self::QuaternionNetwork)
+    }
+
+    /// Whether it has a network.
+    pub fn takes_network(self) -> bool {
+        self == Self::QuaternionNetwork
     }
 }
 
@@ -162,6 +189,12 @@ pub struct EstimatorSettings {
     /// White noise of the attitude that is measured by direction cosines, rad.
     #[serde(rename = "attitude_noise_arcsec", deserialize_with = "quantity::attitude_noise_arcsec")]
     pub attitude_noise: f64,
+    /// What is known of a delay; without it there is none but with "quaternion_delay".
+    #[serde(deserialize_with = "table::optional")]
+    pub delay: Option<DelaySettings>,
+    /// The network of "quaternion_network".
+    #[serde(deserialize_with = "table::optional")]
+    pub network: Option<NetworkSettings>,
 }
 
 impl Default for EstimatorSettings {
@@ -178,6 +211,8 @@ impl Default for EstimatorSettings {
             static_walk: 0.0,
             dynamic_lever_arm: true,
             attitude_noise: 2.0 * unit::ARCSEC,
+            delay: None,
+            network: None,
         }
     }
 }
