@@ -107,6 +107,17 @@ pub fn run(configuration: &Configuration, data: &Data, every_s: f64) -> Track {
     method.track
 }
 
+/// The same with parameter sets that are offered before the first pair, each from its time on.
+pub fn run_told(configuration: &Configuration, data: &Data, every_s: f64, sets: &[FlexureParams]) -> Track {
+    let mut method = Method::new(configuration, every_s);
+    for &set in sets {
+        method.pending.push(set);
+        method.estimator.offer(set);
+    }
+    data.pairs.iter().zip(&data.truths).for_each(|(pair, truth)| method.step(pair, truth));
+    method.track
+}
+
 /// Runs the methods of several configurations side by side over the scenario of the first argument, without keeping the data.
 ///
 /// # Errors

@@ -13,6 +13,7 @@ mod error_range;
 mod fault;
 mod figure;
 mod idam;
+mod model_free;
 mod plan;
 pub mod presets;
 mod row;
@@ -22,7 +23,7 @@ mod track;
 mod tufts_kumaresan;
 mod verdict;
 
-pub use data::{Data, pairs, run, run_together};
+pub use data::{Data, pairs, run, run_together, run_told};
 pub use fault::Fault;
 pub use figure::{Bars, Cloud, Ellipse, Figure, Label, Line, Plot, Series, Stroke};
 pub use plan::{Plan, Trial, Trials};
@@ -45,8 +46,9 @@ pub struct Experiment {
 }
 
 /// All papers, in the order of their output.
-pub const EXPERIMENTS: [Experiment; 3] = [
+pub const EXPERIMENTS: [Experiment; 4] = [
     Experiment { name: "idam", title: idam::TITLE, studies: idam::studies },
+    Experiment { name: "model-free", title: model_free::TITLE, studies: model_free::studies },
     Experiment { name: "tufts-kumaresan", title: tufts_kumaresan::TITLE, studies: tufts_kumaresan::studies },
     Experiment { name: "error-range", title: error_range::TITLE, studies: error_range::studies },
 ];
