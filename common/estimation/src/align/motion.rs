@@ -17,6 +17,8 @@ use nalgebra::{Matrix3, Vector3};
 const WINDOW_S: f64 = 0.1;
 /// The residuals of neighbouring windows of a flexing hull are not independent: their variance counts so much more.
 const CORRELATION: f64 = 20.0;
+/// The least variance of a relative scale error that is reckoned with: units that are called perfect are held to a billionth.
+const LEAST_SCALE_VARIANCE: f64 = 1e-18;
 /// Least number of windows before a solution is tried.
 const LEAST_WINDOWS: f64 = 40.0;
 
@@ -98,7 +100,7 @@ impl Register for Registrar {
         let (davenport, singular) = nearest_rotation(&ab)?;
         let spread = |c: &Matrix3<f64>| aa - c * ab.transpose() - ab * c.transpose() + c * bb * c.transpose();
         let variance = spread(&davenport).trace() / (3.0 * n - 6.0);
-        let pull = variance / self.scale_variance.max(f64::MIN_POSITIVE);
+        let pull = variance / self.scale_variance.max(LEAST_SCALE_VARIANCE);
         let scaled = (ab + davenport * pull) * (bb + Matrix3::identity() * pull).try_inverse()?;
         let (c, _) = nearest_rotation(&scaled)?;
         let residual = spread(&c);
@@ -126,4 +128,30 @@ pub(super) fn nearest_rotation(m: &Matrix3<f64>) -> Option<(Matrix3<f64>, Vector
     let (u, v_t) = (svd.u?, svd.v_t?);
     let sign = (u.determinant() * v_t.determinant()).signum();
     Some((u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v_t, svd.singular_values))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use messages::ImuPair;
+
+    #[test]
+    fn perfect_scale_factors_are_no_obstacle() {
+        let installation = Rot::<Main, Sub>::exp(Vec3::new(0.3, -0.5, 0.4));
+        let mut registrar = Registrar::new(0.0);
+        for k in 0..2000 {
+            let t = f64::from(k) * 0.01;
+            let w = Vec3::<Main>::new((0.8 * t).sin(), (0.9 * t + 1.0).cos(), (1.1 * t).cos()) * 1e-3;
+            let interval_ns = 10_000_000;
+            let dtheta_s = installation.inverse() * w;
+            registrar.add(&ImuPair {
+                interval_ns,
+                dtheta_m: w.array(),
+                dtheta_s: dtheta_s.array(),
+                ..ImuPair::default()
+            });
+        }
+        let found = registrar.solve().expect("three axes of motion");
+        assert!((found.rotation * installation.inverse()).angle() < 1e-9);
+    }
 }
