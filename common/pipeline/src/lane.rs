@@ -3,7 +3,10 @@
 use crate::configuration::{
     Accel, Area, Configuration, FilterMethod, Gyro, IdentifierMethod, MatchingMethod, RangeMethod, RegistrationMethod,
 };
-use estimation::align::{DelayRegistrar, Registrar};
+use estimation::align::analytic::Analytic;
+use estimation::align::least_squares::LeastSquares;
+use estimation::align::quaternion::Angles;
+use estimation::align::{self, DelayRegistrar, Registrar};
 use estimation::estimator::{self, MakeRegister, Matched, MatchedSettings, So3Estimator};
 use estimation::evaluate::{Coherence, Deviations, ErrorRange, Evaluate};
 use estimation::filter::Filter;
@@ -104,6 +107,12 @@ fn matched<M: Model<N, K> + 'static, const N: usize, const K: usize>(
         RegistrationMethod::Motion => Some(|told| Box::new(Registrar::new(told.grade.scale_variance()))),
         RegistrationMethod::Delay => Some(|_| Box::new(DelayRegistrar::new())),
         RegistrationMethod::Installation => None,
+        RegistrationMethod::Quaternion => Some(|_| Box::new(align::quaternion::Quaternion::new(Angles::Windowed))),
+        RegistrationMethod::QuaternionCumulative => {
+            Some(|_| Box::new(align::quaternion::Quaternion::new(Angles::Cumulative)))
+        }
+        RegistrationMethod::LeastSquares => Some(|_| Box::new(LeastSquares::new())),
+        RegistrationMethod::Analytic => Some(|_| Box::new(Analytic::new())),
     };
     let filter = filter(area.estimator.filter);
     let evaluation: Box<dyn Evaluate> = match area.estimator.range {

@@ -26,7 +26,10 @@ fn scenario(name: &str) -> Scenario {
 #[test]
 fn every_preset_is_sound_and_runs() {
     let names = names();
-    assert_eq!(names.iter().filter(|name| name.starts_with("model_free_1_") || name.starts_with("model_free_2_")).count(), 12);
+    assert_eq!(
+        names.iter().filter(|name| name.starts_with("model_free_1_") || name.starts_with("model_free_2_")).count(),
+        12
+    );
     for name in names {
         let mut simulator = Simulator::new(&scenario(&name));
         let mut largest = 0.0f64;

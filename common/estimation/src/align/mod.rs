@@ -1,7 +1,20 @@
 //! Coarse registration: the installation of a sub unit, at any angle, from the first seconds of data.
+//!
+//! | registration | file |
+//! |---|---|
+//! | by motion, windows of 0.1 s without their means, scale errors taken out | [`Registrar`] |
+//! | quaternion optimisation, as printed and in windows | [`quaternion`] |
+//! | least squares for a small rotation | [`least_squares`] |
+//! | analytic, with accelerometers | [`analytic`] |
 
+pub mod analytic;
 mod delay;
+pub mod least_squares;
+mod moments;
 mod motion;
+pub mod quaternion;
+#[cfg(test)]
+mod tests;
 
 pub use delay::DelayRegistrar;
 pub use motion::Registrar;

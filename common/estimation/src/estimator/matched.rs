@@ -93,7 +93,9 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
                 if waited_s < area.registration_s - 0.5 * area.interval_s {
                     return;
                 }
-                let Some(Registration { rotation, covariance, residual_rate, .. }) = registration.solve() else {
+                let Some(Registration { rotation, covariance, residual_rate, .. }) =
+                    registration.solve().filter(Registration::is_observable)
+                else {
                     self.news |= Flags::UNOBSERVABLE;
                     return;
                 };

@@ -1,8 +1,11 @@
 //! What every matching model must pass: checks that the models' own tests call, and a voyage without noise to call them on.
 
-use super::{Model, Motion};
-use frames::{Inertial, Main, MainStart, Rot, Sub, SubStart, Vec3};
-use nalgebra::SVector;
+use super::angles::{self, Angles};
+use super::so3::Grade;
+use super::{Model, Motion, Start};
+use crate::flexure::Flexure;
+use frames::{Inertial, Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
+use nalgebra::{Matrix3, SVector, Vector3};
 
 /// A noise-free motion of both units at 100 Hz; everything is known exactly at every step.
 pub struct Voyage {
@@ -97,4 +100,23 @@ pub fn matrix_is_the_derivative<M: Model<N, K>, const N: usize, const K: usize>(
         let size = seen.matrix.column(i).norm().max(numeric.norm());
         assert!(difference <= tolerance * size, "state {i}: {numeric} against {}", seen.matrix.column(i));
     }
+}
+
+/// What the angle matchings start from in their tests.
+pub fn start(rotation: Rot<Main, Sub>) -> Start {
+    Start {
+        grade: Grade::default(),
+        accel: Default::default(),
+        lever_arm: Vec3::ZERO,
+        flexure: [Flexure { mu: 0.1, b: 1.0, sigma: 20.0 * unit::ARCSEC }; 3],
+        rotation,
+        covariance: Matrix3::identity() * 1e-8,
+    }
+}
+
+/// Puts the truth into the states: the static part, the total, and the constant.
+pub fn at_constant(angles: &mut Angles, fixed: Vector3<f64>, total: Vector3<f64>, eta: Vector3<f64>) {
+    angles.x.fixed_rows_mut::<3>(angles::STATIC).copy_from(&fixed);
+    angles.x.fixed_rows_mut::<3>(angles::FLEXURE).copy_from(&(total - fixed));
+    angles.x.fixed_rows_mut::<3>(angles::CONSTANT).copy_from(&eta);
 }

@@ -109,3 +109,58 @@ impl Model<STATES, 3> for ExactAttitude {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matching::conformance::{STEP_S, Voyage, at_constant, matrix_is_the_derivative, start};
+    use frames::unit::ARCSEC;
+    use nalgebra::SVector;
+
+    fn at_truth(installation: Vec3<Main>, k: usize) -> ExactAttitude {
+        let installation = Rot::<Main, Sub>::exp(installation);
+        let voyage = Voyage { installation, flexure: 10.0 * ARCSEC, delay_s: 0.0, lever_arm: Vec3::ZERO };
+        let (mut model, _) = ExactAttitude::begin(&(), &start(Rot::identity()));
+        model.advance(&voyage.motion(k));
+        model.angles.propagate();
+        let phi = |t: f64| voyage.deformation(t).log().column();
+        at_constant(&mut model.angles, installation.log().column(), phi(k as f64 * STEP_S), -phi(0.0));
+        model
+    }
+
+    #[test]
+    fn the_residual_vanishes_at_the_truth_at_any_angle() {
+        for size in [1e-4, 0.1, 1.0, 2.5] {
+            for k in [1, 137, 522] {
+                let residual = at_truth(Vec3::new(0.5, 0.6, -0.62) * size, k).observe().residual.norm();
+                assert!(residual < 1e-11, "{size} {k} {residual:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_measurement_matrix_is_the_derivative() {
+        for size in [1e-4, 0.1, 1.0, 2.5] {
+            let model = at_truth(Vec3::new(0.5, 0.6, -0.62) * size, 137);
+            matrix_is_the_derivative(&model, &SVector::repeat(1e-5), 1e-6);
+        }
+    }
+
+    #[test]
+    fn the_drift_is_the_derivative_of_the_turned_constant() {
+        let mut model = at_truth(Vec3::new(0.5, 0.6, -0.62), 137);
+        let voyage = Voyage { installation: Rot::identity(), flexure: 0.0, delay_s: 0.0, lever_arm: Vec3::ZERO };
+        (1..=10).for_each(|k| model.advance(&voyage.motion(k)));
+        for axis in 0..3 {
+            let drifted = |by: f64| {
+                let mut other = model.clone();
+                other.angles.x[BIAS + axis] += by;
+                other.propagate();
+                other.angles.three(CONSTANT)
+            };
+            let numeric = (drifted(1e-4) - drifted(-1e-4)) / 2e-4;
+            let transition = model.clone().propagate().transition;
+            assert!((numeric - transition.fixed_view::<3, 1>(CONSTANT, BIAS + axis)).norm() < 1e-6 * numeric.norm());
+        }
+    }
+}

@@ -18,6 +18,14 @@ pub enum RegistrationMethod {
     Installation,
     /// From the motion, together with the sub unit's delay.
     Delay,
+    /// Quaternion optimisation over windows.
+    Quaternion,
+    /// Quaternion optimisation as printed, over all that came in.
+    QuaternionCumulative,
+    /// Least squares for a small rotation.
+    LeastSquares,
+    /// Analytic alignment, with accelerometers.
+    Analytic,
 }
 
 /// What the fast stage compares.
@@ -101,7 +109,14 @@ impl MatchingMethod {
             Self::Rate | Self::AttitudeDcm | Self::Rodrigues | Self::RodriguesPrinted => {
                 &[RegistrationMethod::Motion, RegistrationMethod::Installation]
             }
-            Self::ResidualAttitude => &[RegistrationMethod::Motion, RegistrationMethod::Installation],
+            Self::ResidualAttitude => &[
+                RegistrationMethod::Motion,
+                RegistrationMethod::Installation,
+                RegistrationMethod::Quaternion,
+                RegistrationMethod::QuaternionCumulative,
+                RegistrationMethod::LeastSquares,
+                RegistrationMethod::Analytic,
+            ],
             Self::SmallAngle | Self::ExactAttitude => &[RegistrationMethod::Installation],
             Self::Quaternion => &[RegistrationMethod::Motion, RegistrationMethod::Installation],
             Self::QuaternionDelay | Self::QuaternionWalk | Self::QuaternionNetwork => {
