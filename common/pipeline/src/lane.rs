@@ -15,6 +15,7 @@ use estimation::filter::predictive::Weight;
 use estimation::identify::{self, Fixed, Windowed};
 use estimation::matching::attitude_dcm::{self, AttitudeDcm};
 use estimation::matching::exact_attitude::ExactAttitude;
+use estimation::matching::neural::{self, AngleMatching, Form, Neural};
 use estimation::matching::quaternion::{self, DelayOptions, Quaternion};
 use estimation::matching::quaternion_network::{self, QuaternionNetwork};
 use estimation::matching::rate::{self, RateMatching};
@@ -75,6 +76,12 @@ pub fn estimator(configuration: &Configuration, area: usize) -> Box<dyn Estimato
             };
             matched::<QuaternionNetwork, { quaternion_network::STATES }, 3>(configuration, area, options)
         }
+        MatchingMethod::ResidualAttitudeNetwork => neural::<ResidualAttitude>(configuration, area, Form::Additive),
+        MatchingMethod::ResidualAttitudeNetworkPrinted => {
+            neural::<ResidualAttitude>(configuration, area, Form::Literal)
+        }
+        MatchingMethod::SmallAngleNetwork => neural::<SmallAngle>(configuration, area, Form::Additive),
+        MatchingMethod::SmallAngleNetworkPrinted => neural::<SmallAngle>(configuration, area, Form::Literal),
     }
 }
 
@@ -91,6 +98,12 @@ fn quaternion(configuration: &Configuration, area: usize, rigid: bool, delay: De
     let walk = configuration.areas[area].estimator.static_walk;
     let options = quaternion::Options { static_walk: walk * walk, rigid, delay };
     matched::<Quaternion, { quaternion::STATES }, 3>(configuration, area, options)
+}
+
+/// An estimator by a matching by angles with a network.
+fn neural<M: AngleMatching + 'static>(configuration: &Configuration, area: usize, form: Form) -> Box<dyn Estimator> {
+    let seed = configuration.areas[area].estimator.network.unwrap_or_default().seed;
+    matched::<Neural<M>, { neural::STATES }, 3>(configuration, area, neural::Options { form, seed })
 }
 
 /// An estimator by any matching model.

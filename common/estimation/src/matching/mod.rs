@@ -7,6 +7,7 @@ pub(crate) mod conformance;
 mod constant;
 pub mod exact_attitude;
 pub mod network;
+pub mod neural;
 pub mod quaternion;
 pub mod quaternion_network;
 pub mod rate;

@@ -9,9 +9,11 @@
 //! [`super::neural`].
 
 use super::angles::{Angles, CONSTANT, Covariance, FLEXURE, Rows, STATES, STATIC, State};
+use super::neural::AngleMatching;
 use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
 use crate::flexure::Flexure;
-use nalgebra::Vector3;
+use frames::{Main, Rot, Sub, Vec3};
+use nalgebra::{Matrix3, Vector3};
 
 /// The nominal state.
 #[derive(Clone, Debug)]
@@ -20,23 +22,34 @@ pub struct ResidualAttitude {
     pub angles: Angles,
 }
 
-impl ResidualAttitude {
-    /// What is measured, rad.
+impl AngleMatching for ResidualAttitude {
     // 001 eqs 20-22
-    pub fn measured(&self) -> Vector3<f64> {
+    fn measured(&self) -> Vector3<f64> {
         let Angles { base, a_m, a_s, .. } = self.angles;
         let r0 = base.relabel::<frames::MainStart, frames::SubStart>();
         (r0 * a_s * base.inverse() * a_m.inverse()).log().column()
     }
 
-    /// How that depends on the states.
     // 001 eq 23
-    pub fn matrix(&self) -> Rows {
+    fn matrix(&self) -> Rows {
         let a = self.angles.a_m.matrix();
         let mut matrix = Angles::rows_of(CONSTANT);
         matrix.fixed_view_mut::<3, 3>(0, STATIC).copy_from(&a);
         matrix.fixed_view_mut::<3, 3>(0, FLEXURE).copy_from(&a);
         matrix
+    }
+
+    fn angles(&self) -> &Angles {
+        &self.angles
+    }
+
+    fn by_deformation(&self) -> Matrix3<f64> {
+        self.angles.a_m.matrix()
+    }
+
+    // 001 eq 35, as a product
+    fn total(&self, phi: Vector3<f64>) -> Rot<Main, Sub> {
+        Rot::<Main, Main>::exp(Vec3::from_column(phi)) * self.angles.base
     }
 }
 
@@ -81,7 +94,6 @@ mod tests {
     use super::*;
     use crate::matching::conformance::{STEP_S, Voyage, at_constant, matrix_is_the_derivative, start};
     use frames::unit::{ARCSEC, DEGREE};
-    use frames::{Main, Rot, Sub, Vec3};
     use nalgebra::SVector;
 
     /// The model at step `k` with the truth in its states, for a registration that is off by `residual`.

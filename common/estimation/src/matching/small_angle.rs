@@ -8,6 +8,7 @@
 //! Corrections: eq 22's arcsin of a quotient is an arctangent.
 
 use super::angles::{Angles, CONSTANT, Covariance, Rows, STATES, STATIC, State};
+use super::neural::AngleMatching;
 use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
 use crate::flexure::Flexure;
 use frames::{Main, Rot, Sub, Vec3};
@@ -20,19 +21,29 @@ pub struct SmallAngle {
     pub angles: Angles,
 }
 
-impl SmallAngle {
-    /// What is measured, rad.
-    pub fn measured(&self) -> Vector3<f64> {
+impl AngleMatching for SmallAngle {
+    fn measured(&self) -> Vector3<f64> {
         let turned: Rot<Main, Sub> = self.angles.a_m.relabel::<Main, Main>().inverse() * self.angles.a_s.relabel();
         euler(&turned.matrix())
     }
 
-    /// How that depends on the states.
     // 001 eq 37
-    pub fn matrix(&self) -> Rows {
+    fn matrix(&self) -> Rows {
         let mut matrix = Angles::phi_rows();
         matrix.fixed_view_mut::<3, 3>(0, CONSTANT).copy_from(&self.angles.a_m.matrix().transpose());
         matrix
+    }
+
+    fn angles(&self) -> &Angles {
+        &self.angles
+    }
+
+    fn by_deformation(&self) -> Matrix3<f64> {
+        Matrix3::identity()
+    }
+
+    fn total(&self, phi: Vector3<f64>) -> Rot<Main, Sub> {
+        rotation(phi)
     }
 }
 

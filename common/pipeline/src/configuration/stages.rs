@@ -57,6 +57,14 @@ pub enum MatchingMethod {
     QuaternionWalk,
     /// The same with a network as all there is of the deformation; with the table `delay`, a delay too.
     QuaternionNetwork,
+    /// "residual_attitude" with a network beside it, 56 states.
+    ResidualAttitudeNetwork,
+    /// The same with the network in place of the deformation, as printed.
+    ResidualAttitudeNetworkPrinted,
+    /// "small_angle" with a network beside it, 56 states.
+    SmallAngleNetwork,
+    /// The same with the network in place of the deformation, as printed.
+    SmallAngleNetworkPrinted,
 }
 
 /// How the fast stage corrects its state.
@@ -109,7 +117,7 @@ impl MatchingMethod {
             Self::Rate | Self::AttitudeDcm | Self::Rodrigues | Self::RodriguesPrinted => {
                 &[RegistrationMethod::Motion, RegistrationMethod::Installation]
             }
-            Self::ResidualAttitude => &[
+            Self::ResidualAttitude | Self::ResidualAttitudeNetwork | Self::ResidualAttitudeNetworkPrinted => &[
                 RegistrationMethod::Motion,
                 RegistrationMethod::Installation,
                 RegistrationMethod::Quaternion,
@@ -117,7 +125,9 @@ impl MatchingMethod {
                 RegistrationMethod::LeastSquares,
                 RegistrationMethod::Analytic,
             ],
-            Self::SmallAngle | Self::ExactAttitude => &[RegistrationMethod::Installation],
+            Self::SmallAngle | Self::ExactAttitude | Self::SmallAngleNetwork | Self::SmallAngleNetworkPrinted => {
+                &[RegistrationMethod::Installation]
+            }
             Self::Quaternion => &[RegistrationMethod::Motion, RegistrationMethod::Installation],
             Self::QuaternionDelay | Self::QuaternionWalk | Self::QuaternionNetwork => {
                 &[RegistrationMethod::Motion, RegistrationMethod::Installation, RegistrationMethod::Delay]
@@ -132,9 +142,13 @@ impl MatchingMethod {
             Self::Quaternion | Self::QuaternionDelay | Self::QuaternionWalk | Self::QuaternionNetwork => {
                 &[FilterMethod::Kalman, FilterMethod::Unscented]
             }
-            Self::ResidualAttitude | Self::SmallAngle | Self::ExactAttitude => {
-                &[FilterMethod::Kalman, FilterMethod::Unscented]
-            }
+            Self::ResidualAttitude
+            | Self::SmallAngle
+            | Self::ExactAttitude
+            | Self::ResidualAttitudeNetwork
+            | Self::ResidualAttitudeNetworkPrinted
+            | Self::SmallAngleNetwork
+            | Self::SmallAngleNetworkPrinted => &[FilterMethod::Kalman, FilterMethod::Unscented],
             Self::Rodrigues | Self::RodriguesPrinted => &[
                 FilterMethod::Kalman,
                 FilterMethod::Unscented,
@@ -165,7 +179,14 @@ impl MatchingMethod {
 
     /// Whether it has a network.
     pub fn takes_network(self) -> bool {
-        self == Self::QuaternionNetwork
+        matches!(
+            self,
+            Self::QuaternionNetwork
+                | Self::ResidualAttitudeNetwork
+                | Self::ResidualAttitudeNetworkPrinted
+                | Self::SmallAngleNetwork
+                | Self::SmallAngleNetworkPrinted
+        )
     }
 }
 
@@ -207,7 +228,7 @@ pub struct EstimatorSettings {
     /// What is known of a delay; without it there is none but with "quaternion_delay".
     #[serde(deserialize_with = "table::optional")]
     pub delay: Option<DelaySettings>,
-    /// The network of "quaternion_network".
+    /// The network of the matchings that have one; input and walks are those of "quaternion_network".
     #[serde(deserialize_with = "table::optional")]
     pub network: Option<NetworkSettings>,
 }
