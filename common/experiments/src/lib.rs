@@ -16,6 +16,7 @@ mod idam;
 mod model_free;
 mod plan;
 pub mod presets;
+mod q_nnkf;
 mod row;
 mod statistics;
 mod study;
@@ -46,8 +47,9 @@ pub struct Experiment {
 }
 
 /// All papers, in the order of their output.
-pub const EXPERIMENTS: [Experiment; 4] = [
+pub const EXPERIMENTS: [Experiment; 5] = [
     Experiment { name: "idam", title: idam::TITLE, studies: idam::studies },
+    Experiment { name: "q-nnkf", title: q_nnkf::TITLE, studies: q_nnkf::studies },
     Experiment { name: "model-free", title: model_free::TITLE, studies: model_free::studies },
     Experiment { name: "tufts-kumaresan", title: tufts_kumaresan::TITLE, studies: tufts_kumaresan::studies },
     Experiment { name: "error-range", title: error_range::TITLE, studies: error_range::studies },

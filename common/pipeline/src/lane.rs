@@ -102,8 +102,9 @@ fn quaternion(configuration: &Configuration, area: usize, rigid: bool, delay: De
 
 /// An estimator by a matching by angles with a network.
 fn neural<M: AngleMatching + 'static>(configuration: &Configuration, area: usize, form: Form) -> Box<dyn Estimator> {
-    let seed = configuration.areas[area].estimator.network.unwrap_or_default().seed;
-    matched::<Neural<M>, { neural::STATES }, 3>(configuration, area, neural::Options { form, seed })
+    let network = configuration.areas[area].estimator.network.unwrap_or_default();
+    let options = neural::Options { form, seed: network.seed, sigma: network.weight_sigma };
+    matched::<Neural<M>, { neural::STATES }, 3>(configuration, area, options)
 }
 
 /// An estimator by any matching model.

@@ -57,7 +57,7 @@ impl NetworkInput {
     }
 }
 
-/// The network in the place of a model of the deformation.
+/// A network beside a model of the deformation or in its place.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct NetworkSettings {
@@ -69,12 +69,21 @@ pub struct NetworkSettings {
     /// Random walk of an offset of the output, rad/sqrt(s).
     #[serde(rename = "offset_walk_arcsec_per_sqrt_s", deserialize_with = "quantity::offset_walk_arcsec_per_sqrt_s")]
     pub offset_walk: f64,
+    /// Doubt of the first weights of a network that stands beside a model, one standard deviation: how much it may do.
+    #[serde(deserialize_with = "quantity::weight_sigma")]
+    pub weight_sigma: f64,
     /// Of its first weights.
     pub seed: u64,
 }
 
 impl Default for NetworkSettings {
     fn default() -> Self {
-        Self { input: NetworkInput::Measurement, weight_walk: 1e-3, offset_walk: 1.2 * unit::ARCSEC, seed: 1 }
+        Self {
+            input: NetworkInput::Measurement,
+            weight_walk: 1e-3,
+            offset_walk: 1.2 * unit::ARCSEC,
+            weight_sigma: 0.01,
+            seed: 1,
+        }
     }
 }

@@ -143,6 +143,7 @@ quantities! {
     offset_walk_arcsec_per_sqrt_s: unit::ARCSEC, 0.0, 1e4;
     static_walk_arcsec_per_sqrt_h: unit::ARCSEC / 60.0, 0.0, 1e4;
     static_rate_noise_arcsec2_per_s3: unit::ARCSEC * unit::ARCSEC, 0.0, 1e6;
+    weight_sigma: 1.0, 0.0, 10.0;
 
     lever_arm_m: 1.0, -1000.0, 1000.0;
     rotation_vector_deg: unit::DEGREE, -360.0, 360.0;
