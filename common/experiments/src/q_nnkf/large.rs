@@ -21,7 +21,7 @@ fn axis() -> Vec3<Main> {
 
 pub(super) fn study() -> Study {
     let cost = (ANGLES.len() * METHODS.len()) as u64 * DURATION_S as u64;
-    Study::new(Trials { full: 8, quick: 1 }, cost, measure, conclude)
+    Study::new(Trials { full: 16, quick: 1 }, cost, measure, conclude)
 }
 
 /// By angle and method.
