@@ -86,11 +86,12 @@ pub fn estimator(configuration: &Configuration, area: usize) -> Box<dyn Estimato
 }
 
 fn rodrigues(configuration: &Configuration, area: usize, output: rodrigues::Output) -> Box<dyn Estimator> {
-    let dynamic_lever_arm = configuration.areas[area].estimator.dynamic_lever_arm;
+    let Area { estimator, identifier, .. } = &configuration.areas[area];
+    let (dynamic_lever_arm, cautious) = (estimator.dynamic_lever_arm, identifier.safety);
     matched::<RodriguesMatching, { rodrigues::STATES }, { rodrigues::ROWS }>(
         configuration,
         area,
-        rodrigues::Options { output, dynamic_lever_arm },
+        rodrigues::Options { output, dynamic_lever_arm, cautious },
     )
 }
 

@@ -218,3 +218,14 @@ fn lost_samples_start_the_velocities_anew() {
     let prediction = model.propagate();
     assert!(model.velocities.is_some() && prediction.transition[(VELOCITY, VELOCITY)] == 0.0);
 }
+
+#[test]
+fn an_adopted_flexure_counts_as_larger_unless_told_otherwise() {
+    for (cautious, factor) in [(true, WIDER), (false, 1.0)] {
+        let options = Options { cautious, ..Options::default() };
+        let mut model = RodriguesMatching::begin(&options, &start(Rot::identity(), CRITICAL)).0;
+        assert_eq!(model.flexure, [CRITICAL; 3], "what is told stays as it is");
+        model.set_flexure([Flexure { mu: 0.24, b: 0.48, sigma: ARCMIN }; 3]);
+        assert!((model.flexure[0].sigma - factor * ARCMIN).abs() < 1e-12);
+    }
+}
