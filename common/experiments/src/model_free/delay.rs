@@ -12,6 +12,8 @@ use std::ops::RangeInclusive;
 const SPAN: RangeInclusive<f64> = 120.0..=900.0;
 /// When the delay is looked at, s.
 const EARLY_S: f64 = 10.0;
+/// Samples of a quick run over those of a full one.
+pub(super) const QUICK_RATE: f64 = 0.25;
 /// What counts as found, us.
 const FOUND_US: f64 = 200.0;
 /// Seconds of data times methods, roughly.
@@ -39,7 +41,14 @@ fn methods(delay_ms: u32) -> Vec<Method> {
         "The error is the ship's rate times the delay; which axis turns fastest is up to the sea, which is ours.";
     vec![
         method("true", "Filter told the true models (the bound)", None, true, true, "Re-timed, delay as a state."),
-        method("c", "Method C: network, no compensation", Some(c.clone()), true, false, all_rate),
+        method(
+            "c",
+            "Method C: network, no compensation",
+            Some(c.clone()),
+            true,
+            false,
+            "The network takes the ship's rate for deformation, and the static part passes through beside it.",
+        ),
         method("c-gm", "Gauss-Markov, no compensation", Some(c), false, false, all_rate),
         method(
             "b",
@@ -86,7 +95,7 @@ fn methods(delay_ms: u32) -> Vec<Method> {
 
 pub(super) fn study(delay_ms: u32, size: Size) -> Study {
     Study::new(
-        Trials { full: 10, quick: 1 },
+        Trials { full: 6, quick: 1 },
         COST,
         move |trial| measure(delay_ms, size, trial),
         move |trials| conclude(delay_ms, size, trials),
@@ -154,7 +163,8 @@ fn configurations(size: Size, scenario: &Configuration) -> Result<Vec<Configurat
 }
 
 fn measure(delay_ms: u32, size: Size, trial: &Trial) -> Result<Measured, Fault> {
-    let scenario = presets::configuration(&size.preset(&format!("2.{}", delay_ms / 10)), trial.seed)?;
+    let scenario = presets::configuration(&size.preset(&format!("2.{}", delay_ms / 10)), trial.seed)?
+        .with(|c| c.rate_hz *= if trial.quick { QUICK_RATE } else { 1.0 });
     let data = Data::simulate(&scenario)?;
     let begin_ns = data.pairs.first().map_or(0, |pair| pair.header.time_ns);
     let bound = methods::told(&methods::of("model_free_delay", &scenario, size)?);
@@ -208,8 +218,7 @@ fn deformation_rows(
             id(delay_ms, size, method, &format!("rmse/{}", AXES[axis])),
             &table(delay_ms, size, "RMSE after 2 min"),
             method.name.into(),
-            AXES[axis],
-            "arcsec",
+            [AXES[axis], "arcsec"],
             Bound::Value(bound),
             Published::Nothing("figure 18 has no figures in the text".into()),
             method.why,
@@ -232,8 +241,7 @@ fn largest_row(
         id(delay_ms, size, method, "largest"),
         &table(delay_ms, size, "largest error after 2 min"),
         method.name.into(),
-        "all",
-        "arcsec",
+        ["all", "arcsec"],
         Bound::Value(bound),
         paper.clone(),
         method.why,
@@ -241,7 +249,7 @@ fn largest_row(
     .mean(&of(index))
 }
 
-fn delay_rows(delay_ms: u32, size: Size, trials: &[Measured], index: usize, method: &Method) -> [Row; 3] {
+fn delay_rows(delay_ms: u32, size: Size, trials: &[Measured], index: usize, method: &Method) -> [Row; 4] {
     let of =
         |figure: &dyn Fn(&Delay) -> f64| trials.iter().map(|trial| figure(&trial.figures[index].1)).collect::<Vec<_>>();
     let sigma = rms(&trials.iter().map(|trial| trial.figures[0].1.sigma).collect::<Vec<_>>());
@@ -252,8 +260,7 @@ fn delay_rows(delay_ms: u32, size: Size, trials: &[Measured], index: usize, meth
             id(delay_ms, size, method, rest),
             &table,
             format!("{}: {what}", method.name),
-            "delay",
-            unit,
+            ["delay", unit],
             bound,
             paper,
             why,
@@ -284,7 +291,22 @@ fn delay_rows(delay_ms: u32, size: Size, trials: &[Measured], index: usize, meth
         Published::AtMost(5.0),
         "The paper's 5 s are read off a curve, whose end nobody can see to 0.2 ms.",
     );
-    [early.rms(&of(&|delay| delay.early)), end.rms(&of(&|delay| delay.end)), within.mean(&of(&|delay| delay.found_s))]
+    let sure = |index: usize| trials.iter().map(move |trial| f64::from(trial.figures[index].1.early.abs() <= FOUND_US));
+    let share = row(
+        "delay-10s-share",
+        "share of the trials within 0.2 ms after 10 s",
+        "",
+        Bound::Value(sure(0).sum::<f64>() / trials.len() as f64),
+        unseen(),
+        "Ten seconds are one wave and a half: the bound itself does not always get there.",
+    );
+    let sure: Vec<f64> = sure(index).collect();
+    [
+        early.rms(&of(&|delay| delay.early)),
+        share.mean(&sure),
+        end.rms(&of(&|delay| delay.end)),
+        within.mean(&of(&|delay| delay.found_s)),
+    ]
 }
 
 fn figures(delay_ms: u32, size: Size, trials: &[Measured]) -> Vec<Figure> {
