@@ -4,7 +4,8 @@ use super::{Size, claim};
 use crate::{Bound, Fault, Findings, Published, Study, Trial, Trials, pairs, presets};
 use estimation::align::{DelayRegistrar, Register};
 use estimation::flexure::Flexure;
-use frames::unit::DEGREE;
+use frames::Vec3;
+use frames::unit::{ARCSEC, DEGREE};
 use pipeline::configuration::Configuration;
 use simulation::{Oscillation, Swing, Tones};
 use std::f64::consts::TAU;
@@ -13,6 +14,8 @@ use std::f64::consts::TAU;
 const WINDOWS_S: [f64; 6] = [5.0, 10.0, 20.0, 60.0, 120.0, 300.0];
 /// The delays, by trial, ms.
 const DELAYS_MS: [f64; 3] = [12.3, -57.7, 187.4];
+/// The constant static part, arcsec.
+const STATIC_ARCSEC: [f64; 3] = [150.0, -200.0, 250.0];
 /// Sinusoids of a random sea, an axis.
 const TONES: usize = 24;
 /// The sea of the scenarios: amplitude, deg, and period, s, about x, y, z.
@@ -40,7 +43,7 @@ type Errors = [(f64, f64); WINDOWS_S.len()];
 pub(super) fn studies() -> Vec<Study> {
     let study = |case: Case| {
         Study::new(
-            Trials { full: 12, quick: 1 },
+            Trials { full: 24, quick: 6 },
             600,
             move |trial| measure(case, trial),
             move |trials: &[Errors]| conclude(case, trials),
@@ -64,6 +67,7 @@ fn scenario(case: Case, delay_s: f64, trial: &Trial) -> Result<Configuration, Fa
         let area = &mut c.areas[0].simulation;
         area.wire.delay = delay_s;
         area.flexure_changes.clear();
+        (area.quasi_static, area.installation) = (Default::default(), Vec3::from(STATIC_ARCSEC) * ARCSEC);
         if case.size.is_none() {
             area.flexure.iter_mut().for_each(|axis| axis.sigma = 0.0);
         }

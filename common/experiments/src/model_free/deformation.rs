@@ -63,7 +63,7 @@ fn methods(experiment: &str) -> Vec<Method> {
 
 pub(super) fn study(experiment: &'static str, size: Size) -> Study {
     Study::new(
-        Trials { full: 6, quick: 1 },
+        Trials { full: 6, quick: 2 },
         COST,
         move |trial| measure(experiment, size, trial),
         move |trials| conclude(experiment, size, trials),

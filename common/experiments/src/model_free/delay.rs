@@ -95,7 +95,7 @@ fn methods(delay_ms: u32) -> Vec<Method> {
 
 pub(super) fn study(delay_ms: u32, size: Size) -> Study {
     Study::new(
-        Trials { full: 6, quick: 1 },
+        Trials { full: 6, quick: 2 },
         COST,
         move |trial| measure(delay_ms, size, trial),
         move |trials| conclude(delay_ms, size, trials),
