@@ -39,6 +39,7 @@ const CASES: [Case; 5] = [
 
 /// By window: errors by correlation and by least squares, us.
 type Errors = [(f64, f64); WINDOWS_S.len()];
+type Which = fn(&(f64, f64)) -> f64;
 
 pub(super) fn studies() -> Vec<Study> {
     let study = |case: Case| {
@@ -113,7 +114,7 @@ fn conclude(case: Case, trials: &[Errors]) -> Findings {
     let preset = presets::configuration(&case.size.unwrap_or(Size::Small).preset("2.1"), 0);
     let mut findings = Findings::default();
     for (window, length_s) in WINDOWS_S.into_iter().enumerate() {
-        let methods: [(&str, &str, fn(&(f64, f64)) -> f64); 2] =
+        let methods: [(&str, &str, Which); 2] =
             [("correlation", "correlation", |e| e.0), ("least-squares", "least squares", |e| e.1)];
         for (id, name, of) in methods {
             let values: Vec<f64> = trials.iter().map(|trial| of(&trial[window])).collect();
