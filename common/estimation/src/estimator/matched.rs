@@ -85,7 +85,9 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
         let (rotation, covariance, broad) = match &mut self.registration {
             None => {
                 let Some(told) = area.installation else { return };
-                (told.rotation, Matrix3::identity() * told.sigma.powi(2), [BROAD; 3])
+                // a flexure smaller than the doubt about the installation would be false knowledge too
+                let broad = Flexure { sigma: BROAD.sigma.max(told.sigma), ..BROAD };
+                (told.rotation, Matrix3::identity() * told.sigma.powi(2), [broad; 3])
             }
             Some(registration) => {
                 registration.add(pair);
