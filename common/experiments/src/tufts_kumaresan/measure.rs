@@ -14,20 +14,30 @@ pub(super) struct Way {
     pub(super) name: &'static str,
     method: Method,
     preparation: Preparation,
-    /// Whether the static part of the first pass has been taken out.
-    second_pass: bool,
+    pass: Pass,
+}
+
+/// What has been taken out of the angle before.
+#[derive(Clone, Copy)]
+enum Pass {
+    /// Nothing.
+    First,
+    /// The static part of the filter with the parameters of the first pass, as in the paper.
+    Second,
+    /// The same of the second pass: where the first one is misled by the ship's motion, its static part is no use.
+    Third,
 }
 
 const fn way(key: &'static str, name: &'static str, method: Method, preparation: Preparation) -> Way {
-    Way { key, name, method, preparation, second_pass: true }
+    Way { key, name, method, preparation, pass: Pass::Third }
 }
 
 /// The paper's own is first; the other names in code are places in this list.
 pub(super) const WAYS: [Way; 8] = [
-    way("tk", "Tufts-Kumaresan", Method::TuftsKumaresanPrinted, HIGH_PASS),
+    Way { pass: Pass::Second, ..way("tk", "Tufts-Kumaresan", Method::TuftsKumaresanPrinted, HIGH_PASS) },
     way("whittle", "Whittle", Method::Whittle, Preparation::Line),
     Way {
-        second_pass: false,
+        pass: Pass::First,
         ..way("tk-first-pass", "Tufts-Kumaresan, first pass", Method::TuftsKumaresanPrinted, HIGH_PASS)
     },
     way("tk-line", "Tufts-Kumaresan, line removed only", Method::TuftsKumaresanPrinted, Preparation::Line),
@@ -156,16 +166,26 @@ pub(super) fn measure(preset: &str, sweep: bool, trial: &Trial) -> Result<Measur
     })
 }
 
-/// By way, with the static part from the paper's first pass.
+/// By way.
 fn found(scene: &Scene) -> Vec<Option<[Flexure; 3]>> {
-    let raw = scene.angles();
-    let first = scene.identify(&raw, WAYS[TK].method, WAYS[TK].preparation);
-    let cleared = match first {
+    // in one trial of a hundred the paper's method finds no decaying mode in the first pass
+    let own = |angles: &[_]| {
+        let by = |way: usize| scene.identify(angles, WAYS[way].method, WAYS[way].preparation);
+        by(TK).or_else(|| by(WHITTLE))
+    };
+    let without = |flexure: Option<[Flexure; 3]>| match flexure {
         Some(flexure) => scene.angles_without(scene.static_part(flexure, scene.noise())),
         None => scene.angles(),
     };
+    let first = scene.angles();
+    let second = without(own(&first));
+    let third = without(own(&second));
     let identify = |way: &Way| {
-        let angles = if way.second_pass { &cleared } else { &raw };
+        let angles = match way.pass {
+            Pass::First => &first,
+            Pass::Second => &second,
+            Pass::Third => &third,
+        };
         scene.identify(angles, way.method, way.preparation)
     };
     WAYS.iter().map(identify).collect()

@@ -42,7 +42,7 @@ impl Ship {
 
 /// The studies of this paper.
 pub(crate) fn studies() -> Vec<Study> {
-    let filters = FILTERS.len() as u64 + 1;
+    let filters = FILTERS.len() as u64 + 2;
     let cost = |filters: u64| scene::DURATION_S as u64 * filters;
     vec![
         Study::new(
