@@ -58,8 +58,10 @@ mod tests {
     use super::*;
     use nalgebra::{Matrix2, Matrix2x4, Matrix4, Matrix4x2, Vector2};
 
+    type Case = (Matrix4x2<f64>, Matrix2<f64>, Matrix2x4<f64>, Matrix2<f64>, Vector2<f64>);
+
     /// Two noises of four states, two measurements.
-    fn case() -> (Matrix4x2<f64>, Matrix2<f64>, Matrix2x4<f64>, Matrix2<f64>, Vector2<f64>) {
+    fn case() -> Case {
         let g = Matrix4x2::new(0.0, 0.1, 1.0, 0.3, -0.2, 1.0, 0.0, 0.4);
         let h = Matrix2x4::new(1.0, 0.5, 0.0, 0.2, 0.3, -1.0, 0.7, 0.1);
         (g, Matrix2::new(2.0, 0.3, 0.3, 0.5), h, Matrix2::new(0.04, 0.01, 0.01, 0.09), Vector2::new(0.3, -0.8))
