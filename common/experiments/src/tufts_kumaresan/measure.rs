@@ -168,7 +168,7 @@ pub(super) fn measure(preset: &str, sweep: bool, trial: &Trial) -> Result<Measur
 
 /// By way.
 fn found(scene: &Scene) -> Vec<Option<[Flexure; 3]>> {
-    // in one trial of a hundred the paper's method finds no decaying mode in the first pass
+    // in two trials of a hundred the paper's method finds no decaying mode in the first pass
     let own = |angles: &[_]| {
         let by = |way: usize| scene.identify(angles, WAYS[way].method, WAYS[way].preparation);
         by(TK).or_else(|| by(WHITTLE))
