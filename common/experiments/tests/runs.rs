@@ -99,8 +99,7 @@ fn measured(threads: usize, plan: Plan) -> Vec<(usize, u64, f64)> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| study.run(&plan, &sum)).unwrap();
     assert_eq!(sum.0.into_inner(), study.cost(&plan));
-    let seen = seen.lock().unwrap().clone();
-    seen
+    seen.lock().unwrap().clone()
 }
 
 #[test]
