@@ -1,7 +1,7 @@
 //! Ranges against the error over the first trial.
 
 use super::AXES;
-use super::measure::{Case, Instant, Measured, Width};
+use super::measure::{Case, Measured, Moment, Width};
 use crate::{Figure, Label, Line, Plot, Stroke};
 use frames::unit::ARCSEC;
 
@@ -10,8 +10,8 @@ pub(super) fn ranges(case: Case, trials: &[Measured]) -> Vec<Figure> {
     (0..3).map(|axis| figure(case, series, axis)).collect()
 }
 
-fn figure(case: Case, series: &[Instant], axis: usize) -> Figure {
-    let value = |figure: &dyn Fn(&Instant) -> f64| -> Vec<(f64, f64)> {
+fn figure(case: Case, series: &[Moment], axis: usize) -> Figure {
+    let value = |figure: &dyn Fn(&Moment) -> f64| -> Vec<(f64, f64)> {
         // the first minutes, in which nothing is known yet, would hide the rest
         series
             .iter()

@@ -87,7 +87,7 @@ pub(super) const WIDTHS: [(&str, &str, Width); 8] = [
 
 /// Filter and ranges at one instant, rad.
 #[derive(Clone, Copy)]
-pub(super) struct Instant {
+pub(super) struct Moment {
     pub(super) time_s: f64,
     /// Of the static part.
     pub(super) error: [f64; 3],
@@ -100,7 +100,7 @@ pub(super) struct Instant {
     dynamic_error: [f64; 3],
 }
 
-impl Instant {
+impl Moment {
     fn of(naive: &Solution, formula: &Solution, coherent: &Solution, truth: &Truth) -> Self {
         let [found, real] = [naive.static_q, truth.static_q].map(Rot::<Main, Sub>::from_wxyz);
         let sigma = |covariance: &[f64; 9]| [0, 1, 2].map(|axis| covariance[4 * axis].sqrt());
@@ -141,11 +141,11 @@ pub(super) struct Measured {
     /// The same of the range by coherence.
     pub(super) coherent: [f64; 3],
     /// Of the first trial.
-    pub(super) series: Vec<Instant>,
+    pub(super) series: Vec<Moment>,
 }
 
 impl Measured {
-    fn take(&mut self, now: &Instant) {
+    fn take(&mut self, now: &Moment) {
         self.count += 1.0;
         for axis in 0..3 {
             let error = now.error[axis].abs();
@@ -214,7 +214,7 @@ pub(super) fn measure(case: Case, trial: &Trial) -> Result<Measured, Fault> {
         if now_s < due_s.min(drawn_s) || !naive.is_valid() {
             return;
         }
-        let now = Instant::of(&naive, &formula, &coherent, truth);
+        let now = Moment::of(&naive, &formula, &coherent, truth);
         if now_s >= due_s {
             due_s += 1.0;
             measured.take(&now);
