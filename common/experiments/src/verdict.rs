@@ -5,13 +5,13 @@
 //! | a magnitude | within 2 standard deviations of the difference but not beyond a factor 2, or within 20 % | within a factor 2 |
 //! | a signed value | within 2 standard deviations of the difference, or within 20 % | same sign, within a factor 2 |
 //! | a mean and its spread | within one of the paper's spreads, or within 20 % | same sign, within a factor 2 |
-//! | a range or a limit | in it, or outside by at most 2 standard deviations of ours | outside by at most a factor 2 |
+//! | a range or a limit | in it, or outside by at most 2 standard deviations of ours but not beyond a factor 2 | outside by at most a factor 2 |
 //! | a statement | it holds | never |
 //! | nothing | not testable | |
 //!
 //! The standard deviation of the difference is `s sqrt(1/n + 1/N)` with our spread s over n trials and the paper's number of trials
 //! N, mostly 1: the paper's figure is one more draw from the same spread. That of ours is `s / sqrt(n)`. A single trial has no
-//! spread, and only the other limits count. A magnitude never gets by on its spread alone, which heavy tails make large. A figure
+//! spread, and only the other limits count. A magnitude or a limit never gets by on its spread alone, which heavy tails make large. A figure
 //! that is not a number, because a method gave no valid solution, does not reproduce.
 
 use std::fmt;
@@ -92,7 +92,8 @@ impl Verdict {
 
     fn within(ours: f64, own: f64, low: f64, high: f64) -> Self {
         let nearest = ours.clamp(low.min(high), high.max(low));
-        Self::choose((ours - nearest).abs() <= SIGNIFICANT * own, is_of_size(ours, nearest))
+        let size = is_of_size(ours, nearest);
+        Self::choose(size && (ours - nearest).abs() <= SIGNIFICANT * own, size)
     }
 }
 
@@ -185,6 +186,7 @@ mod tests {
         assert_eq!(verdict(-7.0, 0.0, 4, AtMost(2.0)), Reproduces);
         assert_eq!(verdict(4.0, 0.0, 4, AtMost(2.0)), InSize);
         assert_eq!(verdict(4.1, 0.0, 4, AtMost(2.0)), DoesNot);
+        assert_eq!(verdict(580.0, 440.0, 2, AtMost(5.0)), DoesNot);
         assert_eq!(verdict(0.96, 0.0, 4, AtLeast(0.95)), Reproduces);
         assert_eq!(verdict(0.7, 0.0, 4, AtLeast(0.95)), InSize);
         assert_eq!(verdict(0.0, 0.0, 4, AtLeast(0.95)), DoesNot);
