@@ -105,6 +105,13 @@ impl Flexure {
         }
     }
 
+    /// Writes the stationary covariance into that of a larger state with the angle at `x` and the rate at `v`.
+    pub fn place_stationary<const N: usize>(&self, x: usize, v: usize, p: &mut SMatrix<f64, N, N>) {
+        let stationary = self.stationary();
+        p[(x, x)] = stationary[(0, 0)];
+        p[(v, v)] = stationary[(1, 1)];
+    }
+
     /// Autocovariance at the lag `tau >= 0`: paper 000 eq 17 with the factor the right way up, `R(0) = sigma^2`.
     pub fn autocovariance(&self, tau: f64) -> f64 {
         let (c, s) = self.modes(tau);

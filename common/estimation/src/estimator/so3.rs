@@ -5,8 +5,8 @@ use super::{REGISTRATION_DOUBT, Settings, deck, guess, row_major};
 use crate::Estimator;
 use crate::align::{Register, Registrar, Registration};
 use crate::filter::{kalman, symmetrise};
-use crate::matching::Matching;
 use crate::matching::so3::{Covariance, Increment, STATES, So3, place};
+use crate::matching::{Matching, STATIC_RATE_SIGMA};
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
 use messages::{Flags, FlexureParams, ImuPair, Solution};
 use nalgebra::{Matrix3, SMatrix, Vector3};
@@ -17,10 +17,6 @@ const REGISTER_AGAIN_NS: i64 = 10_000_000_000;
 const LEAST_REGISTRATION_S: f64 = 5.0;
 /// A registration as good as this is not waited for any longer.
 const GOOD_REGISTRATION: f64 = 0.5 * unit::DEGREE;
-/// Standard deviation of the static part's rate at the start, rad/s.
-const STATIC_RATE_SIGMA: f64 = 0.5 * unit::ARCSEC;
-/// Gyro biases may exceed their specification.
-const BIAS_DOUBT: f64 = 3.0;
 /// The published range in standard deviations: 95 % of a normal error.
 const RANGE: f64 = 1.96;
 /// A covariance beyond this (1 rad^2) says nothing of a rotation any more.
@@ -141,16 +137,14 @@ impl So3Estimator {
     fn start(&self, from: Registration, flags: Flags) -> Running {
         let grade = self.settings.grade;
         let flexure = self.settings.flexure.unwrap_or_else(|| guess(&from.residual_rate));
-        let specified = (grade.main.bias.hypot(grade.sub.bias) * BIAS_DOUBT).powi(2);
+        let specified = grade.bias_variance();
         let mut p = Covariance::zeros();
         p.fixed_view_mut::<3, 3>(place::STATIC, place::STATIC).copy_from(&(from.covariance * REGISTRATION_DOUBT));
         p.fixed_view_mut::<6, 6>(place::SCALE, place::SCALE).copy_from(&grade.scale_covariance(from.rotation));
         let mut bias = Vector3::zeros();
         for axis in 0..3 {
             p[(place::STATIC_RATE + axis, place::STATIC_RATE + axis)] = STATIC_RATE_SIGMA.powi(2);
-            let stationary = flexure[axis].stationary();
-            p[(place::FLEXURE + axis, place::FLEXURE + axis)] = stationary[(0, 0)];
-            p[(place::FLEXURE_RATE + axis, place::FLEXURE_RATE + axis)] = stationary[(1, 1)];
+            flexure[axis].place_stationary(place::FLEXURE + axis, place::FLEXURE_RATE + axis, &mut p);
             // what the registration saw of the bias counts only where the specification is the wider one
             let seen = from.bias_sigma[axis].powi(2) * REGISTRATION_DOUBT;
             let trust = if seen.is_finite() { specified / (specified + seen) } else { 0.0 };

@@ -13,11 +13,10 @@
 //! Corrections: eq 27's noise of unit variance means nothing, its density is a setting; eq 28's main frequency stands in table 1 in Hz and
 //! counts as an angular frequency; eq 29 lacks the derivative's dot. The gyro's first-order Markov part is left to the constant's doubt.
 
-use super::{Prediction, Start, View};
+use super::grade::{Grade, MATCHING_SIGMA, STATIC_RATE_SIGMA};
+use super::{Motion, Prediction, Start, Turn, View, rows_of, three};
 use crate::flexure::Flexure;
-use crate::matching::Motion;
-use crate::matching::so3::Grade;
-use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
+use frames::{Main, MainStart, Rot, Sub, SubStart};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// Size of the error state.
@@ -42,12 +41,7 @@ pub type Covariance = SMatrix<f64, STATES, STATES>;
 /// Error state.
 pub type State = SVector<f64, STATES>;
 
-/// Regularises a measurement that has no noise of its own: the random walk of integrated rates is that of `eta`.
-const MATCHING_SIGMA: f64 = 0.05 * unit::ARCSEC;
-/// Standard deviation of the static part's rate at the start, rad/s.
-const STATIC_RATE_SIGMA: f64 = 0.5 * unit::ARCSEC;
-/// Gyro biases may exceed their specification.
-const BIAS_DOUBT: f64 = 3.0;
+const TURN: Turn = Turn { fixed: STATIC, flexure: FLEXURE, rate: FLEXURE_RATE };
 
 /// The states, and what has come in since they were last propagated.
 #[derive(Clone, Debug)]
@@ -72,14 +66,11 @@ impl Angles {
     /// that of static part and flexure.
     pub fn begin(start: &Start, base: Rot<Main, Sub>) -> (Self, Covariance) {
         let mut p = Covariance::zeros();
-        let bias = start.grade.main.bias.hypot(start.grade.sub.bias) * BIAS_DOUBT;
         p.fixed_view_mut::<3, 3>(STATIC, STATIC).copy_from(&start.covariance);
         for axis in 0..3 {
-            let stationary = start.flexure[axis].stationary();
             p[(STATIC_RATE + axis, STATIC_RATE + axis)] = STATIC_RATE_SIGMA.powi(2);
-            p[(FLEXURE + axis, FLEXURE + axis)] = stationary[(0, 0)];
-            p[(FLEXURE_RATE + axis, FLEXURE_RATE + axis)] = stationary[(1, 1)];
-            p[(BIAS + axis, BIAS + axis)] = bias * bias;
+            start.flexure[axis].place_stationary(FLEXURE + axis, FLEXURE_RATE + axis, &mut p);
+            p[(BIAS + axis, BIAS + axis)] = start.grade.bias_variance();
         }
         let mut link = Covariance::identity();
         link.fixed_view_mut::<3, 3>(CONSTANT, STATIC).copy_from(&-Matrix3::identity());
@@ -100,7 +91,7 @@ impl Angles {
 
     /// Three states.
     pub fn three(&self, place: usize) -> Vector3<f64> {
-        self.x.fixed_rows::<3>(place).into()
+        three(&self.x, place)
     }
 
     /// Static part and flexure.
@@ -110,16 +101,7 @@ impl Angles {
 
     /// How [`Angles::phi`] depends on the states.
     pub fn phi_rows() -> Rows {
-        let mut rows = Self::rows_of(STATIC);
-        rows.fixed_view_mut::<3, 3>(0, FLEXURE).fill_with_identity();
-        rows
-    }
-
-    /// How three states depend on the states.
-    pub fn rows_of(place: usize) -> Rows {
-        let mut rows = Rows::zeros();
-        rows.fixed_view_mut::<3, 3>(0, place).fill_with_identity();
-        rows
+        rows_of(STATIC) + rows_of(FLEXURE)
     }
 
     /// Covariance of a matching measurement, rad^2.
@@ -147,15 +129,9 @@ impl Angles {
         let h = self.pending_s;
         let mut transition = Covariance::identity();
         let mut noise = Covariance::zeros();
-        let q = self.grade.static_noise;
         for axis in 0..3 {
             // 001 eq 27
-            let (s, r) = (STATIC + axis, STATIC_RATE + axis);
-            transition[(s, r)] = h;
-            noise[(s, s)] = q * h * h * h / 3.0;
-            noise[(s, r)] = q * h * h / 2.0;
-            noise[(r, s)] = noise[(s, r)];
-            noise[(r, r)] = q * h;
+            self.grade.place_static(h, STATIC + axis, STATIC_RATE + axis, &mut transition, &mut noise);
             // 001 eq 28
             self.flexure[axis].place(h, FLEXURE + axis, FLEXURE_RATE + axis, &mut transition, &mut noise);
             noise[(CONSTANT + axis, CONSTANT + axis)] = self.walk;
@@ -182,20 +158,13 @@ impl Angles {
     pub fn view(&self) -> View<STATES> {
         let Prediction { transition, noise } = self.ahead();
         let now = transition * self.x;
-        let three = |place: usize| -> Vector3<f64> { now.fixed_rows::<3>(place).into() };
-        let turn = |phi: Vector3<f64>| Rot::<Main, Main>::exp(Vec3::from_column(phi)) * self.base;
-        let rows = Self::phi_rows();
+        let view = View::of_small_turn(self.base, &now, TURN, three(&now, BIAS));
         View {
-            deformation: turn(three(STATIC) + three(FLEXURE)),
-            rows: rows * transition,
-            noise: rows * noise * rows.transpose(),
-            static_part: turn(three(STATIC)),
-            static_rows: Self::rows_of(STATIC) * transition,
-            rate: Vec3::from_column(three(FLEXURE_RATE)),
-            rate_rows: Self::rows_of(FLEXURE_RATE) * transition,
-            drift: Vec3::from_column(three(BIAS)),
-            delay: None,
-            skew: None,
+            rows: view.rows * transition,
+            noise: view.rows * noise * view.rows.transpose(),
+            static_rows: view.static_rows * transition,
+            rate_rows: view.rate_rows * transition,
+            ..view
         }
     }
 }
@@ -204,6 +173,7 @@ impl Angles {
 mod tests {
     use super::*;
     use crate::matching::conformance::Voyage;
+    use frames::Vec3;
     use frames::unit::ARCSEC;
 
     fn voyage() -> Voyage {
@@ -225,7 +195,7 @@ mod tests {
     #[test]
     fn the_first_measurement_is_in_no_doubt() {
         let (_, p) = angles();
-        let rows = Angles::phi_rows() + Angles::rows_of(CONSTANT);
+        let rows = Angles::phi_rows() + rows_of(CONSTANT);
         assert!((rows * p * rows.transpose()).norm() < 1e-12 * p.norm());
     }
 

@@ -16,10 +16,10 @@
 //! does; the flexure's noise of eq 14 drives its rate, and the angle random walk the attitudes. The paper does not say how noisy the
 //! measurement is: [`Options::noise`] covers what its linear form leaves out.
 
-use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
+use super::grade::Grade;
+use super::{Matching, Model, Motion, Observation, Prediction, Start, Turn, View, three};
 use crate::flexure::Flexure;
-use crate::matching::so3::Grade;
-use frames::{Main, Rot, Sub, Vec3};
+use frames::{Main, Rot, Sub};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// Size of the error state.
@@ -29,6 +29,7 @@ const FLEXURE: usize = 3;
 const RATE: usize = 6;
 const ATTITUDE: [usize; 2] = [9, 12];
 const BIAS: [usize; 2] = [15, 18];
+const TURN: Turn = Turn { fixed: STATIC, flexure: FLEXURE, rate: RATE };
 
 /// Which use of attitude matching.
 #[derive(Clone, Copy, Debug)]
@@ -64,10 +65,6 @@ pub fn difference(attitude_m: &Matrix3<f64>, attitude_s: &Matrix3<f64>) -> Vecto
 }
 
 impl AttitudeDcm {
-    fn three(&self, place: usize) -> Vector3<f64> {
-        self.x.fixed_rows::<3>(place).into()
-    }
-
     // 003 eq 16, from the left by B
     fn matrix(&self) -> SMatrix<f64, 3, STATES> {
         let [m, s] = self.attitude.map(|attitude| attitude.transpose());
@@ -126,14 +123,12 @@ impl Model<STATES, 3> for AttitudeDcm {
         let mut p = SMatrix::<f64, STATES, STATES>::zeros();
         p.fixed_view_mut::<3, 3>(STATIC, STATIC).copy_from(&start.covariance);
         for axis in 0..3 {
-            let stationary = start.flexure[axis].stationary();
-            p[(FLEXURE + axis, FLEXURE + axis)] = stationary[(0, 0)];
-            p[(RATE + axis, RATE + axis)] = stationary[(1, 1)];
+            start.flexure[axis].place_stationary(FLEXURE + axis, RATE + axis, &mut p);
             // Psi_s starts as theta
-            let place = ATTITUDE[1] + axis;
-            p[(place, place)] = stationary[(0, 0)];
-            p[(place, FLEXURE + axis)] = stationary[(0, 0)];
-            p[(FLEXURE + axis, place)] = stationary[(0, 0)];
+            let (place, variance) = (ATTITUDE[1] + axis, p[(FLEXURE + axis, FLEXURE + axis)]);
+            p[(place, place)] = variance;
+            p[(place, FLEXURE + axis)] = variance;
+            p[(FLEXURE + axis, place)] = variance;
             for (place, unit) in BIAS.into_iter().zip([start.grade.main, start.grade.sub]) {
                 p[(place + axis, place + axis)] = unit.bias * unit.bias;
             }
@@ -167,25 +162,8 @@ impl Model<STATES, 3> for AttitudeDcm {
     }
 
     fn view(&self) -> View<STATES> {
-        let turn = |phi: Vector3<f64>| Rot::<Main, Main>::exp(Vec3::from_column(phi)) * self.rotation;
-        let mut static_rows = SMatrix::<f64, 3, STATES>::zeros();
-        static_rows.fixed_view_mut::<3, 3>(0, STATIC).fill_with_identity();
-        let mut rows = static_rows;
-        rows.fixed_view_mut::<3, 3>(0, FLEXURE).fill_with_identity();
-        let mut rate_rows = SMatrix::<f64, 3, STATES>::zeros();
-        rate_rows.fixed_view_mut::<3, 3>(0, RATE).fill_with_identity();
-        View {
-            deformation: turn(self.three(STATIC) + self.three(FLEXURE)),
-            rows,
-            noise: Matrix3::zeros(),
-            static_part: turn(self.three(STATIC)),
-            static_rows,
-            rate: Vec3::from_column(self.three(RATE)),
-            rate_rows,
-            drift: Vec3::from_column(self.three(BIAS[0]) - self.three(BIAS[1])),
-            delay: None,
-            skew: None,
-        }
+        let drift = three(&self.x, BIAS[0]) - three(&self.x, BIAS[1]);
+        View::of_small_turn(self.rotation, &self.x, TURN, drift)
     }
 }
 

@@ -1,7 +1,7 @@
 //! What every matching model must pass: checks that the models' own tests call, and a voyage without noise to call them on.
 
 use super::angles::{self, Angles};
-use super::so3::Grade;
+use super::grade::Grade;
 use super::{Model, Motion, Start};
 use crate::flexure::Flexure;
 use frames::{Inertial, Main, MainStart, Rot, Sub, SubStart, Vec3, unit};

@@ -1,7 +1,7 @@
 //! What becomes of the constant `N` of `A_m D = N A_s` and of its error between two updates of a filter.
 
 use super::Motion;
-use super::so3::Grade;
+use super::grade::Grade;
 use frames::{Main, MainStart, Rot, SubStart, Vec3};
 use nalgebra::Matrix3;
 
@@ -19,10 +19,9 @@ pub(super) struct Since {
 impl Since {
     /// Takes in what both units felt.
     pub fn advance(&mut self, motion: &Motion, grade: &Grade) {
-        let arw = grade.main.arw.powi(2) + grade.sub.arw.powi(2);
         self.time_s += motion.interval_s;
         self.by_bias += middle(motion).matrix() * motion.interval_s;
-        self.walk += arw * motion.interval_s + motion.disturbance.powi(2);
+        self.walk += grade.arw_density() * motion.interval_s + motion.disturbance.powi(2);
     }
 }
 

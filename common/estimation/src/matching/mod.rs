@@ -6,6 +6,7 @@ pub mod attitude_dcm;
 pub(crate) mod conformance;
 mod constant;
 pub mod exact_attitude;
+mod grade;
 pub mod network;
 pub mod neural;
 pub mod quaternion;
@@ -16,12 +17,17 @@ pub mod retiming;
 pub mod rodrigues;
 pub mod small_angle;
 pub mod so3;
+mod view;
+
+pub(crate) use grade::STATIC_RATE_SIGMA;
+pub use view::View;
 
 use crate::align::Lag;
 use crate::flexure::Flexure;
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
+use grade::Grade;
 use nalgebra::{Matrix3, SMatrix, SVector};
-use so3::Grade;
+use view::{Turn, rows_of, three};
 
 /// Transition and noise of an error state over one filter interval.
 #[derive(Clone, Copy, Debug)]
@@ -106,31 +112,6 @@ pub struct Accel {
     pub vrw: f64,
     /// Relative bias, m/s^2.
     pub bias: f64,
-}
-
-/// What a model has to say at an instant; `rows` give the error of what stands beside them from the error state.
-#[derive(Clone, Copy, Debug)]
-pub struct View<const N: usize> {
-    /// Total deformation.
-    pub deformation: Rot<Main, Sub>,
-    /// Of the error of the total, in m.
-    pub rows: SMatrix<f64, 3, N>,
-    /// Covariance that has entered the total since the last propagation, rad^2.
-    pub noise: Matrix3<f64>,
-    /// Static part.
-    pub static_part: Rot<Main, Sub>,
-    /// Of the error of the static part.
-    pub static_rows: SMatrix<f64, 3, N>,
-    /// Rate of the flexure, rad/s.
-    pub rate: Vec3<Main>,
-    /// Of the error of that rate.
-    pub rate_rows: SMatrix<f64, 3, N>,
-    /// Relative gyro bias, main minus sub unit, rad/s.
-    pub drift: Vec3<Main>,
-    /// By how much the sub unit's stamps are late, s, with the place of its state; `None` where it is not estimated.
-    pub delay: Option<(f64, usize)>,
-    /// By how much the delay grows in a second, with the place of its state.
-    pub skew: Option<(f64, usize)>,
 }
 
 /// A matching model that an estimator can run.

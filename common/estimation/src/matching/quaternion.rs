@@ -27,12 +27,12 @@
 //! (3,2) of the matching matrix give way to the rotation vector. Static part and flexure share one Jacobian, see `so3`.
 
 use super::constant::{Since, drifted};
+use super::grade::{Grade, MATCHING_SIGMA, STATIC_RATE_SIGMA};
 use super::retiming::{Retimed, Together};
-use super::so3::Grade;
 use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
 use crate::align::Lag;
 use crate::flexure::Flexure;
-use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
+use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// Size of the error state.
@@ -45,13 +45,6 @@ const CONSTANT: usize = 12;
 const BIAS: usize = 15;
 const DELAY: usize = 18;
 const SKEW: usize = 19;
-
-/// Gyro biases may exceed their specification.
-const BIAS_DOUBT: f64 = 3.0;
-/// Rate of a static part that moves, rad/s.
-const STATIC_RATE_SIGMA: f64 = 0.5 * unit::ARCSEC;
-/// Regularises a measurement that has no noise of its own, rad.
-pub(super) const MATCHING_SIGMA: f64 = 0.05 * unit::ARCSEC;
 
 /// Which use of the model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -188,14 +181,10 @@ impl Matching<STATES, 3> for Quaternion {
         let mut noise = SMatrix::<f64, STATES, STATES>::zeros();
         let state = &mut self.state;
         state.static_part = (Rot::<Main, Main>::exp(state.static_rate * h) * state.static_part).normalised();
-        let q = self.grade.static_noise;
         for axis in 0..3 {
-            let (s, r) = (STATIC + axis, STATIC_RATE + axis);
-            transition[(s, r)] = h;
-            noise[(s, s)] = q * h * h * h / 3.0 + self.options.static_walk * h;
-            noise[(s, r)] = q * h * h / 2.0;
-            noise[(r, s)] = noise[(s, r)];
-            noise[(r, r)] = q * h;
+            let s = STATIC + axis;
+            self.grade.place_static(h, s, STATIC_RATE + axis, &mut transition, &mut noise);
+            noise[(s, s)] += self.options.static_walk * h;
             if self.options.rigid {
                 continue;
             }
@@ -247,16 +236,13 @@ impl Model<STATES, 3> for Quaternion {
     fn begin(options: &Options, start: &Start) -> (Self, SMatrix<f64, STATES, STATES>) {
         let mut p = SMatrix::<f64, STATES, STATES>::zeros();
         p.fixed_view_mut::<3, 3>(STATIC, STATIC).copy_from(&start.covariance);
-        let bias = start.grade.main.bias.hypot(start.grade.sub.bias) * BIAS_DOUBT;
         let static_rate = if start.grade.static_noise > 0.0 { STATIC_RATE_SIGMA } else { 0.0 };
         for axis in 0..3 {
             p[(STATIC_RATE + axis, STATIC_RATE + axis)] = static_rate * static_rate;
             if !options.rigid {
-                let stationary = start.flexure[axis].stationary();
-                p[(FLEXURE + axis, FLEXURE + axis)] = stationary[(0, 0)];
-                p[(FLEXURE_RATE + axis, FLEXURE_RATE + axis)] = stationary[(1, 1)];
+                start.flexure[axis].place_stationary(FLEXURE + axis, FLEXURE_RATE + axis, &mut p);
             }
-            p[(BIAS + axis, BIAS + axis)] = bias * bias;
+            p[(BIAS + axis, BIAS + axis)] = start.grade.bias_variance();
         }
         p[(DELAY, DELAY)] = options.delay.sigma.powi(2);
         p[(SKEW, SKEW)] = options.delay.skew_sigma.powi(2);

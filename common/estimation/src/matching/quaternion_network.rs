@@ -20,10 +20,10 @@
 //! Corrections to the paper: those of `quaternion`.
 
 use super::constant::{Since, drifted};
+use super::grade::{Grade, MATCHING_SIGMA};
 use super::network::{Network, OFFSET, WEIGHTS};
-use super::quaternion::{DelayOptions, MATCHING_SIGMA};
+use super::quaternion::DelayOptions;
 use super::retiming::{Retimed, Together};
-use super::so3::Grade;
 use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
 use crate::align::Lag;
 use crate::flexure::Flexure;
@@ -46,8 +46,6 @@ const WEIGHT_SIGMA: f64 = 0.3;
 const OFFSET_SIGMA: f64 = 10.0;
 /// Spread of the first weights of the hidden and of the output layer.
 const FIRST_WEIGHTS: [f64; 2] = [0.5, 0.1];
-/// Gyro biases may exceed their specification.
-const BIAS_DOUBT: f64 = 3.0;
 
 /// What the network gets to see.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -213,8 +211,7 @@ impl Model<STATES, 3> for QuaternionNetwork {
         for i in 0..WEIGHTS {
             p[(i, i)] = if i < OFFSET { WEIGHT_SIGMA } else { OFFSET_SIGMA }.powi(2);
         }
-        let bias = start.grade.main.bias.hypot(start.grade.sub.bias) * BIAS_DOUBT;
-        p.fixed_view_mut::<3, 3>(BIAS, BIAS).fill_diagonal(bias * bias);
+        p.fixed_view_mut::<3, 3>(BIAS, BIAS).fill_diagonal(start.grade.bias_variance());
         p[(DELAY, DELAY)] = options.delay.sigma.powi(2);
         let [inner, outer] = FIRST_WEIGHTS;
         let state = State {

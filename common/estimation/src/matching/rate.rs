@@ -11,10 +11,10 @@
 //! Corrections: eq 19 lacks the identity at the rate of the flexure; with the mean of both units' rates instead of the sub unit's the measurement
 //! is exact to second order. The mean rate over the interval stands for the rate at its end.
 
-use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
+use super::grade::Grade;
+use super::{Matching, Model, Motion, Observation, Prediction, Start, Turn, View, three};
 use crate::flexure::Flexure;
-use crate::matching::so3::Grade;
-use frames::{Main, Rot, Sub, Vec3};
+use frames::{Main, Rot, Sub};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// Size of the error state.
@@ -23,9 +23,7 @@ const STATIC: usize = 0;
 const FLEXURE: usize = 3;
 const RATE: usize = 6;
 const BIAS: usize = 9;
-
-/// Gyro biases may exceed their specification.
-const BIAS_DOUBT: f64 = 3.0;
+const TURN: Turn = Turn { fixed: STATIC, flexure: FLEXURE, rate: RATE };
 
 /// Which use of rate matching.
 #[derive(Clone, Copy, Debug, Default)]
@@ -50,10 +48,6 @@ pub struct RateMatching {
 }
 
 impl RateMatching {
-    fn three(&self, place: usize) -> Vector3<f64> {
-        self.x.fixed_rows::<3>(place).into()
-    }
-
     /// How the measurement depends on the state.
     fn matrix(&self) -> SMatrix<f64, 3, STATES> {
         let turn = ((self.w_m + self.w_s) * 0.5).cross_matrix();
@@ -82,10 +76,9 @@ impl Matching<STATES, 3> for RateMatching {
     // 004 eq 10
     fn observe(&self) -> Observation<STATES, 3> {
         let matrix = self.matrix();
-        let arw = self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2);
         // what the mean of the flexure's rate over the interval differs from its value at the end
         let end = |axis: usize| self.flexure[axis].density() * self.interval_s / 3.0;
-        let variance = Vector3::from_fn(|axis, _| arw / self.interval_s + end(axis));
+        let variance = Vector3::from_fn(|axis, _| self.grade.arw_density() / self.interval_s + end(axis));
         Observation {
             residual: self.w_s - self.w_m - matrix * self.x,
             matrix,
@@ -104,12 +97,9 @@ impl Model<STATES, 3> for RateMatching {
     fn begin(options: &Options, start: &Start) -> (Self, SMatrix<f64, STATES, STATES>) {
         let mut p = SMatrix::<f64, STATES, STATES>::zeros();
         p.fixed_view_mut::<3, 3>(STATIC, STATIC).copy_from(&start.covariance);
-        let bias = start.grade.main.bias.hypot(start.grade.sub.bias) * BIAS_DOUBT;
         for axis in 0..3 {
-            let stationary = start.flexure[axis].stationary();
-            p[(FLEXURE + axis, FLEXURE + axis)] = stationary[(0, 0)];
-            p[(RATE + axis, RATE + axis)] = stationary[(1, 1)];
-            p[(BIAS + axis, BIAS + axis)] = bias * bias;
+            start.flexure[axis].place_stationary(FLEXURE + axis, RATE + axis, &mut p);
+            p[(BIAS + axis, BIAS + axis)] = start.grade.bias_variance();
         }
         let model = Self {
             options: *options,
@@ -137,25 +127,7 @@ impl Model<STATES, 3> for RateMatching {
     }
 
     fn view(&self) -> View<STATES> {
-        let turn = |phi: Vector3<f64>| Rot::<Main, Main>::exp(Vec3::from_column(phi)) * self.rotation;
-        let mut static_rows = SMatrix::<f64, 3, STATES>::zeros();
-        static_rows.fixed_view_mut::<3, 3>(0, STATIC).fill_with_identity();
-        let mut rows = static_rows;
-        rows.fixed_view_mut::<3, 3>(0, FLEXURE).fill_with_identity();
-        let mut rate_rows = SMatrix::<f64, 3, STATES>::zeros();
-        rate_rows.fixed_view_mut::<3, 3>(0, RATE).fill_with_identity();
-        View {
-            deformation: turn(self.three(STATIC) + self.three(FLEXURE)),
-            rows,
-            noise: Matrix3::zeros(),
-            static_part: turn(self.three(STATIC)),
-            static_rows,
-            rate: Vec3::from_column(self.three(RATE)),
-            rate_rows,
-            drift: Vec3::from_column(-self.three(BIAS)),
-            delay: None,
-            skew: None,
-        }
+        View::of_small_turn(self.rotation, &self.x, TURN, -three(&self.x, BIAS))
     }
 }
 
@@ -163,6 +135,7 @@ impl Model<STATES, 3> for RateMatching {
 mod tests {
     use super::*;
     use crate::matching::conformance::{Voyage, matrix_is_the_derivative};
+    use frames::Vec3;
     use frames::unit::ARCSEC;
 
     const VOYAGE: Voyage =
@@ -216,7 +189,7 @@ mod tests {
     fn without_the_rate_of_the_flexure_the_residual_is_of_its_size() {
         // 004 eq 19 as printed has nothing in the place of the rate
         let mut model = at_truth(Vec3::new(60.0, -40.0, 80.0) * ARCSEC, 137);
-        let rate = model.three(RATE).norm();
+        let rate = three(&model.x, RATE).norm();
         model.x.fixed_rows_mut::<3>(RATE).fill(0.0);
         assert!(model.observe().residual.norm() > 0.9 * rate);
     }

@@ -10,7 +10,7 @@
 
 use super::angles::{Angles, CONSTANT, Covariance, FLEXURE, Rows, STATES, STATIC, State};
 use super::neural::AngleMatching;
-use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
+use super::{Matching, Model, Motion, Observation, Prediction, Start, View, rows_of};
 use crate::flexure::Flexure;
 use frames::{Main, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, Vector3};
@@ -33,7 +33,7 @@ impl AngleMatching for ResidualAttitude {
     // 001 eq 23
     fn matrix(&self) -> Rows {
         let a = self.angles.a_m.matrix();
-        let mut matrix = Angles::rows_of(CONSTANT);
+        let mut matrix: Rows = rows_of(CONSTANT);
         matrix.fixed_view_mut::<3, 3>(0, STATIC).copy_from(&a);
         matrix.fixed_view_mut::<3, 3>(0, FLEXURE).copy_from(&a);
         matrix

@@ -22,9 +22,9 @@
 //! * eq 78: rates are means over a sample, `theta'` stands at its end: the rate rows' noise has `Q dt / 3` added.
 //! * `P(0)` ties `l` to `theta`: `2 l = Phi + theta(0)`.
 
-use super::{Accel, Matching, Model, Motion, Observation, Prediction, Start, View};
+use super::grade::Grade;
+use super::{Accel, Matching, Model, Motion, Observation, Prediction, Start, View, three};
 use crate::flexure::Flexure;
-use crate::matching::so3::Grade;
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
@@ -41,9 +41,7 @@ const LEVER: usize = 15;
 const FLEXURE: usize = 18;
 const RATE: usize = 21;
 
-/// Biases may exceed their specification.
-const BIAS_DOUBT: f64 = 3.0;
-/// The same of the accelerometers, which covers their scale and alignment.
+/// Biases of the accelerometers may exceed their specification, which also covers their scale and alignment.
 const ACCEL_DOUBT: f64 = 2.0;
 /// Noise of the velocity rows: coning and sculling of single samples, m/s.
 const VELOCITY_SIGMA: f64 = 2e-4;
@@ -159,7 +157,7 @@ fn slope(l: &Vector3<f64>) -> Matrix3<f64> {
 
 impl RodriguesMatching {
     fn three(&self, place: usize) -> Vector3<f64> {
-        self.x.fixed_rows::<3>(place).into()
+        three(&self.x, place)
     }
 
     /// Variance of what the velocity rows add of their own, m^2/s^2.
@@ -297,8 +295,9 @@ impl Matching<STATES, ROWS> for RodriguesMatching {
             Prediction { transition: SMatrix::identity(), noise: SMatrix::zeros() };
         let Prediction { transition, noise } = &mut prediction;
         transition.fixed_view_mut::<3, 3>(TILT, BIAS).copy_from(&-pending.turn);
-        let arw = self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2);
-        noise.fixed_view_mut::<3, 3>(TILT, TILT).fill_diagonal(arw * pending.time_s + pending.variance);
+        noise
+            .fixed_view_mut::<3, 3>(TILT, TILT)
+            .fill_diagonal(self.grade.arw_density() * pending.time_s + pending.variance);
         for axis in 0..3 {
             self.flexure[axis].place(pending.time_s, FLEXURE + axis, RATE + axis, transition, noise);
         }
@@ -324,9 +323,8 @@ impl Matching<STATES, ROWS> for RodriguesMatching {
         seen.matrix.fixed_view_mut::<3, 3>(3, TILT).copy_from(&(plus * w_s.cross_matrix()));
         seen.matrix.fixed_view_mut::<3, 3>(3, BIAS).copy_from(&(plus * c_s));
         seen.matrix.fixed_view_mut::<3, 3>(3, RATE).copy_from(&(minus * c_m));
-        let arw = self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2);
         let density = self.flexure.iter().map(Flexure::density).fold(0.0, f64::max);
-        let variance = arw / interval_s + density * interval_s / 3.0;
+        let variance = self.grade.arw_density() / interval_s + density * interval_s / 3.0;
         seen.noise.fixed_view_mut::<3, 3>(3, 3).fill_diagonal(variance);
         seen
     }
@@ -356,8 +354,7 @@ impl Model<STATES, ROWS> for RodriguesMatching {
         p.fixed_view_mut::<3, 3>(FLEXURE, PARAMETERS).copy_from(&with.transpose());
         p.fixed_view_mut::<3, 3>(FLEXURE, FLEXURE).copy_from(&bent);
         p.fixed_view_mut::<3, 3>(RATE, RATE).copy_from(&rate);
-        let bias = start.grade.main.bias.hypot(start.grade.sub.bias) * BIAS_DOUBT;
-        p.fixed_view_mut::<3, 3>(BIAS, BIAS).fill_diagonal(bias * bias);
+        p.fixed_view_mut::<3, 3>(BIAS, BIAS).fill_diagonal(start.grade.bias_variance());
         let accel_bias = start.accel.bias * ACCEL_DOUBT;
         p.fixed_view_mut::<3, 3>(ACCEL_BIAS, ACCEL_BIAS).fill_diagonal(accel_bias * accel_bias);
         let model = Self {
@@ -413,12 +410,13 @@ impl Model<STATES, ROWS> for RodriguesMatching {
                 rows += angle_rows;
             }
         }
-        let arw = self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2);
         View {
             deformation,
             rows,
             noise: Matrix3::identity()
-                * (arw * self.pending.time_s + self.pending.variance + self.grade.triad_variance()),
+                * (self.grade.arw_density() * self.pending.time_s
+                    + self.pending.variance
+                    + self.grade.triad_variance()),
             static_part,
             static_rows,
             rate: Vec3::from_column(rate),

@@ -9,7 +9,7 @@
 
 use super::angles::{Angles, CONSTANT, Covariance, Rows, STATES, STATIC, State};
 use super::neural::AngleMatching;
-use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
+use super::{Matching, Model, Motion, Observation, Prediction, Start, View, rows_of};
 use crate::flexure::Flexure;
 use frames::{Main, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, Vector3};
@@ -96,7 +96,7 @@ impl Model<STATES, 3> for SmallAngle {
         let now = self.angles.now();
         View {
             deformation: rotation(Angles::phi_rows() * now),
-            static_part: rotation(Angles::rows_of(STATIC) * now),
+            static_part: rotation(rows_of(STATIC) * now),
             ..self.angles.view()
         }
     }

@@ -21,10 +21,11 @@
 //! Static part and flexure share ONE Jacobian, that at `theta = 0`: with the exact pair the flexure itself becomes a regressor for
 //! directions that nothing shows, and the filter invents information where there is no sway.
 
-use super::{Matching, Observation, Prediction};
+pub use super::grade::{Grade, Gyro};
+use super::{Matching, Observation, Prediction, rows_of};
 use crate::flexure::Flexure;
-use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
-use nalgebra::{Matrix3, Matrix6, SMatrix, SVector, Vector3};
+use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// Size of the error state.
 pub const STATES: usize = 27;
@@ -55,104 +56,12 @@ pub type ErrorState = SVector<f64, STATES>;
 type Rows = SMatrix<f64, 3, STATES>;
 type ByScale = SMatrix<f64, 3, 6>;
 
-/// Regularises a measurement that has no noise of its own: 0.05 arcsec, and the random walk of so many seconds. With less, the
-/// covariance of a coarse unit and this variance lie too far apart for a double.
-const MATCHING_SIGMA: f64 = 0.05 * unit::ARCSEC;
-const MATCHING_S: f64 = 0.1;
 /// Correlation time of the bias's variation in the run, s.
 const WANDER_S: f64 = 100.0;
-/// So much of the scale and misalignment figures is not constant: nonlinearity, asymmetry, sensitivity to acceleration.
-const INCONSTANT: f64 = 0.1;
-/// For how long that part keeps its sign, s: about one turn of the ship, or one movement by hand.
-const INCONSTANT_S: f64 = 1.0;
-
-/// The figures of one unit's gyros.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Gyro {
-    /// Angular random walk, rad/sqrt(s).
-    pub arw: f64,
-    /// Bias, rad/s, one standard deviation.
-    pub bias: f64,
-    /// By how much the bias varies in the run, rad/s, one standard deviation.
-    pub instability: f64,
-    /// Scale factor error, one standard deviation.
-    pub scale: f64,
-    /// Misalignment of a sensitive axis, rad, one standard deviation.
-    pub misalignment: f64,
-    /// White error of the stamps, s.
-    pub stamp_jitter: f64,
-}
-
-/// What the model takes as given.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Grade {
-    /// Main unit.
-    pub main: Gyro,
-    /// Sub unit.
-    pub sub: Gyro,
-    /// Density of the white noise that drives the static part's rate, rad^2/s^3.
-    pub static_noise: f64,
-}
-
-impl Grade {
-    /// Variance of the angle that a whole triad may be turned by its misalignments, which no data show, rad^2.
-    pub fn triad_variance(&self) -> f64 {
-        0.5 * (self.main.misalignment.powi(2) + self.sub.misalignment.powi(2))
-    }
-
-    /// Variance, per second and per squared rate of turn, that the inconstant part of scale and misalignment adds.
-    fn turning_variance(&self) -> f64 {
-        INCONSTANT * INCONSTANT * INCONSTANT_S * self.scale_variance()
-    }
-
-    /// Variance of a relative scale error, whether along an axis or across.
-    pub fn scale_variance(&self) -> f64 {
-        let square = |gyro: &Gyro| gyro.scale.powi(2) + gyro.misalignment.powi(2);
-        square(&self.main) + square(&self.sub)
-    }
-
-    /// Variance of a matching measurement, rad^2.
-    fn matching_variance(&self) -> f64 {
-        MATCHING_SIGMA.powi(2) + (self.main.arw.powi(2) + self.sub.arw.powi(2)) * MATCHING_S
-    }
-
-    /// The least standard deviation of a flexure that these gyros can tell from their own errors, rad: what the relative random walk
-    /// adds up to in ten seconds and the bias's variation in two. Less must not be believed.
-    pub fn least_flexure(&self) -> f64 {
-        let walk = self.main.arw.hypot(self.sub.arw) * f64::sqrt(10.0);
-        walk.hypot(self.wander_variance().sqrt() * 2.0)
-    }
-
-    /// Variance of the relative bias's variation in the run, rad^2/s^2.
-    pub fn wander_variance(&self) -> f64 {
-        self.main.instability.powi(2) + self.sub.instability.powi(2)
-    }
-
-    /// Covariance of the relative scale states for an installation `d`, from the units' figures.
-    pub fn scale_covariance(&self, d: Rot<Main, Sub>) -> Matrix6<f64> {
-        let own = |gyro: &Gyro| {
-            let (scale, skew) = (gyro.scale.powi(2), 0.5 * gyro.misalignment.powi(2));
-            Matrix6::from_diagonal(&[scale, scale, scale, skew, skew, skew].into())
-        };
-        let c = d.matrix();
-        let mut turn = Matrix6::zeros();
-        for column in 0..6 {
-            let mut unit = SVector::<f64, 6>::zeros();
-            unit[column] = 1.0;
-            turn.set_column(column, &components(&(c * symmetric(&unit) * c.transpose())));
-        }
-        own(&self.main) + turn * own(&self.sub) * turn.transpose()
-    }
-}
 
 /// The symmetric matrix of the components xx, yy, zz, xy, xz, yz.
 pub fn symmetric(m: &SVector<f64, 6>) -> Matrix3<f64> {
     Matrix3::new(m[0], m[3], m[4], m[3], m[1], m[5], m[4], m[5], m[2])
-}
-
-/// The components of a symmetric matrix.
-fn components(m: &Matrix3<f64>) -> SVector<f64, 6> {
-    [m[(0, 0)], m[(1, 1)], m[(2, 2)], m[(0, 1)], m[(0, 2)], m[(1, 2)]].into()
 }
 
 /// `d(M w) / d(components of M)`.
@@ -270,7 +179,7 @@ impl So3 {
         let since = &mut self.since;
         since.by_bias += a * step.time_s;
         since.by_scale += a * by_scale(dtheta);
-        since.walk += (self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2)) * step.time_s
+        since.walk += self.grade.arw_density() * step.time_s
             + step.disturbance.powi(2)
             + coning * coning
             + self.grade.turning_variance() * rate.norm_squared() * step.time_s;
@@ -337,10 +246,7 @@ impl So3 {
 
     /// How the error of [`So3::predicted`] depends on the error state, but for the sign.
     pub fn prediction_rows() -> Rows {
-        let mut rows = Rows::zeros();
-        rows.fixed_view_mut::<3, 3>(0, place::STATIC).fill_with_identity();
-        rows.fixed_view_mut::<3, 3>(0, place::FLEXURE).fill_with_identity();
-        rows
+        rows_of(place::STATIC) + rows_of(place::FLEXURE)
     }
 
     /// Covariance that has entered the deformation since the last propagation, in m.
@@ -363,15 +269,9 @@ impl Matching<STATES, 3> for So3 {
         let mut transition = Covariance::identity();
         let mut noise = Covariance::zeros();
         self.static_part = (Rot::<Main, Main>::exp(self.static_rate * h) * self.static_part).normalised();
-        let q = self.grade.static_noise;
         for axis in 0..3 {
             let (s, r) = (place::STATIC + axis, place::STATIC_RATE + axis);
-            transition[(s, r)] = h;
-            noise[(s, s)] = q * h * h * h / 3.0;
-            noise[(s, r)] = q * h * h / 2.0;
-            noise[(r, s)] = noise[(s, r)];
-            noise[(r, r)] = q * h;
-
+            self.grade.place_static(h, s, r, &mut transition, &mut noise);
             let (x, v) = (place::FLEXURE + axis, place::FLEXURE_RATE + axis);
             self.flexure[axis].place(h, x, v, &mut transition, &mut noise);
             let (theta, rate) = (self.theta[axis], self.theta_rate[axis]);

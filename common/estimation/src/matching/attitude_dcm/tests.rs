@@ -1,6 +1,7 @@
 use super::*;
 use crate::filter::Filter;
 use crate::matching::conformance::{STEP_S, Voyage, matrix_is_the_derivative};
+use frames::Vec3;
 
 const MRAD: f64 = 1e-3;
 const FLEXED: Flexure = Flexure { mu: 0.1, b: 1.1, sigma: 0.5 * MRAD };
