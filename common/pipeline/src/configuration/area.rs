@@ -1,7 +1,8 @@
 //! The main unit, and the deck areas with their units.
 
+use super::estimator::EstimatorSettings;
+use super::identifier::{IdentifierSettings, identifier};
 use super::instrument::{Accel, Gyro, Source, mounting, source};
-use super::stages::{EstimatorSettings, IdentifierSettings, identifier};
 use super::{AreaSimulation, quantity, table};
 use frames::{Case, Main, Rot, Sub, Vec3, unit};
 use serde::Deserialize;

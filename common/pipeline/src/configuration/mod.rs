@@ -4,14 +4,15 @@ mod area;
 mod area_simulation;
 mod document;
 mod error;
+mod estimator;
 mod flexure;
+mod identifier;
 mod instrument;
 mod model_free;
 mod quantity;
 mod rules;
 mod scenario;
 mod simulation;
-mod stages;
 mod swing;
 mod table;
 mod unit_errors;
@@ -19,13 +20,11 @@ mod unit_errors;
 pub use area::{Area, Installation, MainUnit};
 pub use area_simulation::AreaSimulation;
 pub use error::ConfigurationError;
+pub use estimator::{EstimatorSettings, FilterMethod, MatchingMethod, RangeMethod, RegistrationMethod};
+pub use identifier::{IdentifierMethod, IdentifierSettings};
 pub use instrument::{Accel, Gyro, Source};
 pub use model_free::{DelaySettings, NetworkInput, NetworkSettings};
 pub use simulation::{Ins, Simulation, Wire};
-pub use stages::{
-    EstimatorSettings, FilterMethod, IdentifierMethod, IdentifierSettings, MatchingMethod, RangeMethod,
-    RegistrationMethod,
-};
 
 use document::Document;
 use serde::{Deserialize, Deserializer};
