@@ -1,6 +1,7 @@
 //! The presets of the papers' scenarios, and the keys that they need.
 #![allow(clippy::unwrap_used)]
 
+use crate::text::{message_with, read_with};
 use frames::unit::{ARCMIN, ARCSEC, DEG_PER_H, DEGREE};
 use frames::{Rot, Vec3};
 use pipeline::configuration::Configuration;
@@ -89,32 +90,17 @@ fn the_reference_units_of_the_voyage_stand_beside_the_testing_units() {
     assert!(still.areas.iter().zip(&s.areas).all(|(a, b)| (a.unit, a.installation) == (b.unit, b.installation)));
 }
 
-const MINIMAL: &str = r#"rate_hz = 100
-[main]
-source = { kind = "simulator" }
-gyro = { arw_deg_per_sqrt_h = 0.001, bias_deg_per_h = 0.003 }
-[[area]]
-name = "radar"
-source = { kind = "simulator" }
-gyro = { arw_deg_per_sqrt_h = 0.001, bias_deg_per_h = 0.01 }
-"#;
-
-fn read(lines: &str) -> Result<Scenario, String> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("ship.toml");
-    std::fs::write(&path, format!("{MINIMAL}{lines}\n")).unwrap();
-    let prefix = format!("{}/ship.toml:", folder.path().display());
-    Configuration::read(&path).map(|c| c.scenario(1)).map_err(|error| error.to_string().replace(&prefix, ""))
+fn told(lines: &str) -> Scenario {
+    read_with(lines).unwrap().scenario(1)
 }
 
 #[test]
 fn swings_are_read_in_three_forms() {
-    let s = read(
+    let s = told(
         "[simulation]\nroll = { amplitude_deg = 4, period_s = 7, random_phase = true }\n\
          pitch = { amplitude_deg = 3, period_s = 8, tones = 24 }\n\
          heading = { sigma_deg = 1, frequency_hz = 0.05, mu_per_s = 0.12, band_limit_hz = 0.4 }",
-    )
-    .unwrap();
+    );
     let roll = Oscillation { amplitude: 4.0 * DEGREE, period: 7.0, phase: 0.0, random_phase: true };
     let pitch = Tones { rms: 3.0 * DEGREE / 2f64.sqrt(), period: 8.0, count: 24 };
     let b = 0.12f64.hypot(std::f64::consts::TAU * 0.05);
@@ -158,19 +144,18 @@ fn contradictions_are_told() {
         ),
         ("[area.simulation]\nhull = 1", "10: area[0].simulation.hull = 1", "must be within 1000 to 9999"),
     ] {
-        let message = read(lines).expect_err(lines);
-        assert!(message.starts_with(place) && message.contains(part), "{message}");
+        let message = message_with(lines);
+        assert!(message.starts_with(&format!("ship.toml:{place}")) && message.contains(part), "{message}");
     }
 }
 
 #[test]
 fn what_bends_and_errs_is_read_in_si() {
-    let s = read(
+    let s = told(
         "[area.simulation]\nstarts_at_rest = true\noutliers = { probability = 0.01, size_sigmas = 50 }\n\
          impulses = { factor = 50, probability = 5e-4, cell_ms = 10 }\n\
          coupling = { in_phase_rotation_arcsec = [30, -20, 50] }",
-    )
-    .unwrap();
+    );
     let area = &s.areas[0];
     assert!(area.starts_at_rest && !area.unit.outliers.one_sided && area.unit.outliers.size == 50.0);
     assert_eq!(area.impulses.unwrap().cell_s, 0.01);

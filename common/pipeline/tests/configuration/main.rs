@@ -1,0 +1,7 @@
+//! Configurations: what is read, in which units, and what each mistake is told.
+
+mod messages;
+mod papers;
+mod rules;
+mod text;
+mod values;
