@@ -13,6 +13,7 @@
 //! Corrections: eq 27's noise of unit variance means nothing, its density is a setting; eq 28's main frequency stands in table 1 in Hz and
 //! counts as an angular frequency; eq 29 lacks the derivative's dot. The gyro's first-order Markov part is left to the constant's doubt.
 
+use super::constant::Since;
 use super::grade::{Grade, MATCHING_SIGMA, STATIC_RATE_SIGMA};
 use super::{Motion, Prediction, Start, Turn, View, rows_of, three};
 use crate::flexure::Flexure;
@@ -56,9 +57,7 @@ pub struct Angles {
     pub a_m: Rot<MainStart, Main>,
     /// Accumulated attitude of the sub unit.
     pub a_s: Rot<SubStart, Sub>,
-    pending_s: f64,
-    by_bias: Matrix3<f64>,
-    walk: f64,
+    since: Since,
 }
 
 impl Angles {
@@ -82,9 +81,7 @@ impl Angles {
             x: State::zeros(),
             a_m: Rot::identity(),
             a_s: Rot::identity(),
-            pending_s: 0.0,
-            by_bias: Matrix3::zeros(),
-            walk: 0.0,
+            since: Since::default(),
         };
         (angles, link * p * link.transpose())
     }
@@ -116,17 +113,13 @@ impl Angles {
 
     /// Takes in a pair.
     pub fn advance(&mut self, motion: &Motion) {
-        let middle = motion.a_m * Rot::<Main, Main>::exp(motion.dtheta_m * -0.5);
-        let arw = self.grade.main.arw.powi(2) + self.grade.sub.arw.powi(2);
-        self.by_bias += middle.matrix() * motion.interval_s;
-        self.walk += arw * motion.interval_s + motion.disturbance.powi(2);
-        self.pending_s += motion.interval_s;
+        self.since.advance(motion, &self.grade);
         (self.a_m, self.a_s) = (motion.a_m, motion.a_s);
     }
 
     /// What the states do over the time since the last propagation.
     fn ahead(&self) -> Prediction<STATES> {
-        let h = self.pending_s;
+        let h = self.since.time_s;
         let mut transition = Covariance::identity();
         let mut noise = Covariance::zeros();
         for axis in 0..3 {
@@ -134,10 +127,9 @@ impl Angles {
             self.grade.place_static(h, STATIC + axis, STATIC_RATE + axis, &mut transition, &mut noise);
             // 001 eq 28
             self.flexure[axis].place(h, FLEXURE + axis, FLEXURE_RATE + axis, &mut transition, &mut noise);
-            noise[(CONSTANT + axis, CONSTANT + axis)] = self.walk;
         }
         // 001 eq 29
-        transition.fixed_view_mut::<3, 3>(CONSTANT, BIAS).copy_from(&-self.by_bias);
+        self.since.place(CONSTANT, BIAS, &mut transition, &mut noise);
         Prediction { transition, noise }
     }
 
@@ -145,7 +137,7 @@ impl Angles {
     pub fn propagate(&mut self) -> Prediction<STATES> {
         let prediction = self.ahead();
         self.x = prediction.transition * self.x;
-        (self.pending_s, self.by_bias, self.walk) = (0.0, Matrix3::zeros(), 0.0);
+        self.since = Since::default();
         prediction
     }
 

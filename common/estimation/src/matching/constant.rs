@@ -3,7 +3,7 @@
 use super::Motion;
 use super::grade::Grade;
 use frames::{Main, MainStart, Rot, SubStart, Vec3};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, SMatrix};
 
 /// What has come in since the last propagation.
 #[derive(Clone, Copy, Debug, Default)]
@@ -22,6 +22,18 @@ impl Since {
         self.time_s += motion.interval_s;
         self.by_bias += middle(motion).matrix() * motion.interval_s;
         self.walk += grade.arw_density() * motion.interval_s + motion.disturbance.powi(2);
+    }
+
+    /// Writes what became of the error of the constant at `constant` into transition and noise of a state with the bias at `bias`.
+    pub fn place<const N: usize>(
+        &self,
+        constant: usize,
+        bias: usize,
+        transition: &mut SMatrix<f64, N, N>,
+        noise: &mut SMatrix<f64, N, N>,
+    ) {
+        transition.fixed_view_mut::<3, 3>(constant, bias).copy_from(&-self.by_bias);
+        noise.fixed_view_mut::<3, 3>(constant, constant).fill_diagonal(self.walk);
     }
 }
 

@@ -161,15 +161,15 @@ impl QuaternionNetwork {
 
 impl Matching<STATES, 3> for QuaternionNetwork {
     fn propagate(&mut self) -> Prediction<STATES> {
-        let Since { time_s: h, by_bias, walk } = std::mem::take(&mut self.since);
+        let since = std::mem::take(&mut self.since);
+        let h = since.time_s;
         let mut transition = SMatrix::<f64, STATES, STATES>::identity();
         let mut noise = SMatrix::<f64, STATES, STATES>::zeros();
         for i in 0..WEIGHTS {
             let step = if i < OFFSET { self.options.weight_walk } else { self.options.offset_walk / SCALE };
             noise[(i, i)] = step * step * h;
         }
-        transition.fixed_view_mut::<3, 3>(CONSTANT, BIAS).copy_from(&-by_bias);
-        noise.fixed_view_mut::<3, 3>(CONSTANT, CONSTANT).fill_diagonal(walk);
+        since.place(CONSTANT, BIAS, &mut transition, &mut noise);
         let mut prediction = Prediction { transition, noise };
         if let Some(together) = self.attitudes.together().filter(|_| !self.begun) {
             self.begin_constant(&together, &mut prediction);
