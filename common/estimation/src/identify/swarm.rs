@@ -1,6 +1,14 @@
-//! What the swarm searches share: where they search, how many they are, and numbers that are the same in every run.
+//! What the swarm searches share: what is identified, where they search, how many they are, and numbers that are the same in every run.
+//!
+//! What is minimised is the sum of squares of [`super::tied`] over `ln mu` and `ln b`, the variance projected out.
 
+use super::axis::Identified;
+use super::lagged::Lagged;
+use super::poles::identified;
 use super::refinement::{DAMPING, FREQUENCY};
+use super::series::Series;
+use super::tied::{LONGEST_S, SPACING_S, Tied};
+use nalgebra::DVector;
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::{Rng, SeedableRng};
 
@@ -42,6 +50,14 @@ impl Dice {
     pub fn agent(&mut self) -> usize {
         ((self.unit() * AGENTS as f64) as usize).min(AGENTS - 1)
     }
+}
+
+/// Identifies an axis by a search of the cheapest place; `None` if no model fits with a positive variance.
+pub fn identify(series: &Series, search: impl Fn(&dyn Fn(&Place) -> f64) -> Best) -> Option<Identified> {
+    let lagged = Lagged::new(series, SPACING_S, LONGEST_S)?;
+    let (tied, target) = (Tied::new(series, &lagged), DVector::from_column_slice(&lagged.values));
+    let best = search(&|place| tied.cost(&target, place[0].exp(), place[1].exp()));
+    identified(series, tied.flexure(&target, best.place[0].exp(), best.place[1].exp())?)
 }
 
 /// Least and largest value of an axis of the box.

@@ -1,7 +1,7 @@
 //! Whale optimisation: the search of 000's rival WOAM.
 //!
 //! Source: paper 000 section 5 names it without equations; these are those of S. Mirjalili and A. Lewis (2016) with 30 agents and
-//! 100 rounds. What is minimised is the sum of squares of [`super::tied`] over `ln mu` and `ln b`, the variance projected out.
+//! 100 rounds.
 //!
 //! | number | meaning |
 //! |---|---|
@@ -12,20 +12,13 @@
 //! Correction: `A` and `C` are drawn anew for each axis, as the authors' programme does and the equations leave open.
 
 use super::axis::Identified;
-use super::lagged::Lagged;
-use super::poles::identified;
 use super::series::Series;
-use super::swarm::{AGENTS, Best, Dice, Place, ROUNDS, bounded};
-use super::tied::{LONGEST_S, SPACING_S, Tied};
-use nalgebra::DVector;
+use super::swarm::{self, AGENTS, Best, Dice, Place, ROUNDS, bounded};
 use std::f64::consts::TAU;
 
 /// Identifies an axis; `None` if no model fits with a positive variance.
 pub fn identify(series: &Series) -> Option<Identified> {
-    let lagged = Lagged::new(series, SPACING_S, LONGEST_S)?;
-    let (tied, target) = (Tied::new(series, &lagged), DVector::from_column_slice(&lagged.values));
-    let best = search(|place| tied.cost(&target, place[0].exp(), place[1].exp()));
-    identified(series, tied.flexure(&target, best.place[0].exp(), best.place[1].exp())?)
+    swarm::identify(series, |cost| search(cost))
 }
 
 /// The cheapest place found.
