@@ -55,6 +55,10 @@ pub struct Matched<M: Model<N, K>, const N: usize, const K: usize> {
 struct Running<M, const N: usize> {
     model: M,
     p: SMatrix<f64, N, N>,
+    /// What the model says after the last pair taken in.
+    view: View<N>,
+    /// Covariance of the total by the error state alone, rad^2.
+    covariance: Matrix3<f64>,
     epoch: u64,
     begin_ns: i64,
     last_ns: i64,
@@ -128,7 +132,10 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
             model.delayed(&lag, &mut p);
         }
         let begin_ns = first.header.time_ns;
+        let view = model.view();
         let mut running = Running {
+            covariance: view.rows * p * view.rows.transpose(),
+            view,
             model,
             p,
             epoch: first.epoch,
@@ -172,9 +179,9 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
         };
         let Some(running) = &self.running else { return solution };
         let View { deformation, rows, noise, static_part, static_rows, rate, rate_rows, drift, delay, skew } =
-            running.model.view();
+            running.view;
         let p = &running.p;
-        let covariance = rows * p * rows.transpose() + noise;
+        let covariance = running.covariance + noise;
         let static_covariance = static_rows * p * static_rows.transpose();
         let dynamic_rows = rows - static_rows;
         let (a_m, a_s) = (Rot::<MainStart, Main>::from_wxyz(pair.attitude_m), Rot::from_wxyz(pair.attitude_s));
@@ -276,9 +283,10 @@ impl<M, const N: usize> Running<M, N> {
             symmetrise(&mut self.p);
             filter.correct(&mut self.model, &mut self.p, &noise)?;
         }
-        let view = self.model.view();
+        self.view = self.model.view();
+        self.covariance = self.view.rows * self.p * self.view.rows.transpose();
         let variances = self.p.diagonal();
-        let sound = variances.iter().all(|v| v.is_finite() && *v >= 0.0) && view.deformation.log().is_finite();
-        (sound && (view.rows * self.p * view.rows.transpose()).diagonal().max() < LOST * LOST).then_some(())
+        let sound = variances.iter().all(|v| v.is_finite() && *v >= 0.0) && self.view.deformation.log().is_finite();
+        (sound && self.covariance.diagonal().max() < LOST * LOST).then_some(())
     }
 }
