@@ -5,9 +5,9 @@
 //! extend. The states are parameters of rotations and are corrected by addition, so the Jacobians carry those of the exponential, and the
 //! filter fails where a rotation vector does, towards half a turn.
 
-use super::angles::{Angles, BIAS, CONSTANT, Covariance, Rows, STATES, State};
-use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
-use crate::flexure::Flexure;
+use super::angle_model::AngleModel;
+use super::angles::{Angles, BIAS, CONSTANT, Rows, STATES};
+use super::{Prediction, View};
 use frames::{Main, MainStart, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
@@ -40,8 +40,34 @@ impl ExactAttitude {
     }
 }
 
-impl Matching<STATES, 3> for ExactAttitude {
-    fn propagate(&mut self) -> Prediction<STATES> {
+impl AngleModel for ExactAttitude {
+    fn new(angles: Angles) -> Self {
+        Self { angles }
+    }
+
+    fn angles(&self) -> &Angles {
+        &self.angles
+    }
+
+    fn angles_mut(&mut self) -> &mut Angles {
+        &mut self.angles
+    }
+
+    fn residual(&self) -> Vector3<f64> {
+        let Angles { a_m, a_s, .. } = self.angles;
+        let predicted: Rot<Main, Sub> = turn(self.angles.phi());
+        let measured: Rot<Main, Sub> = a_m.inverse() * self.constant() * a_s.relabel::<MainStart, Sub>();
+        (measured * predicted.inverse()).log().column()
+    }
+
+    fn matrix(&self) -> Rows {
+        let mut matrix: Rows = left_jacobian(self.angles.phi()) * Angles::phi_rows();
+        let by_constant = self.angles.a_m.matrix().transpose() * left_jacobian(-self.angles.three(CONSTANT));
+        matrix.fixed_view_mut::<3, 3>(0, CONSTANT).copy_from(&by_constant);
+        matrix
+    }
+
+    fn carry(&mut self) -> Prediction<STATES> {
         let before = self.angles.three(CONSTANT);
         let Prediction { mut transition, mut noise } = self.angles.propagate();
         // the gyros' error turns N from the left; eta is minus its rotation vector
@@ -55,57 +81,14 @@ impl Matching<STATES, 3> for ExactAttitude {
         Prediction { transition, noise }
     }
 
-    fn observe(&self) -> Observation<STATES, 3> {
-        let phi = self.angles.phi();
-        let Angles { a_m, a_s, .. } = self.angles;
-        let predicted: Rot<Main, Sub> = turn(phi);
-        let measured: Rot<Main, Sub> = a_m.inverse() * self.constant() * a_s.relabel::<MainStart, Sub>();
-        let mut matrix: Rows = left_jacobian(phi) * Angles::phi_rows();
-        let by_constant = a_m.matrix().transpose() * left_jacobian(-self.angles.three(CONSTANT));
-        matrix.fixed_view_mut::<3, 3>(0, CONSTANT).copy_from(&by_constant);
-        Observation {
-            residual: (measured * predicted.inverse()).log().column(),
-            matrix,
-            noise: Angles::measurement_noise(),
-        }
-    }
-
-    fn inject(&mut self, error: &State) {
-        self.angles.x += error;
-    }
-}
-
-impl Model<STATES, 3> for ExactAttitude {
-    type Options = ();
-
-    fn begin(_: &(), start: &Start) -> (Self, Covariance) {
-        let (angles, p) = Angles::begin(start, Rot::identity());
-        (Self { angles }, p)
-    }
-
-    fn advance(&mut self, motion: &Motion) {
-        self.angles.advance(motion);
-    }
-
-    fn set_flexure(&mut self, flexure: [Flexure; 3]) {
-        self.angles.set_flexure(flexure);
-    }
-
-    fn view(&self) -> View<STATES> {
-        let View { rows, noise, static_rows, rate, rate_rows, drift, deformation, static_part, .. } =
-            self.angles.view();
-        let by_phi = left_jacobian(deformation.log().column());
+    fn total_view(&self) -> View<STATES> {
+        let view = self.angles.view();
+        let by_phi = left_jacobian(view.deformation.log().column());
         View {
-            rows: by_phi * rows,
-            noise: by_phi * noise * by_phi.transpose(),
-            static_rows: left_jacobian(static_part.log().column()) * static_rows,
-            deformation,
-            static_part,
-            rate,
-            rate_rows,
-            drift,
-            delay: None,
-            skew: None,
+            rows: by_phi * view.rows,
+            noise: by_phi * view.noise * by_phi.transpose(),
+            static_rows: left_jacobian(view.static_part.log().column()) * view.static_rows,
+            ..view
         }
     }
 }
@@ -114,6 +97,7 @@ impl Model<STATES, 3> for ExactAttitude {
 mod tests {
     use super::*;
     use crate::matching::conformance::{STEP_S, Voyage, at_constant, matrix_is_the_derivative, start};
+    use crate::matching::{Matching, Model};
     use frames::unit::ARCSEC;
     use nalgebra::SVector;
 

@@ -1,5 +1,6 @@
 //! Matching models: what the difference of two units' attitudes, rates or velocities says about the deformation.
 
+pub mod angle_model;
 pub mod angles;
 pub mod attitude_dcm;
 #[cfg(test)]

@@ -14,6 +14,7 @@
 //! nonlinearity left to learn (under 0.3 arcsec). Both forms are here to be measured. Scales, first weights, their doubt and their walk are
 //! ours: the paper publishes none of them. With a doubt of 0.01 its table 5 comes out; the more the network may do, the worse it gets.
 
+use super::angle_model::AngleModel;
 use super::angles::{self, Angles, Rows};
 use super::network::{Network, WEIGHTS};
 use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
@@ -32,14 +33,10 @@ const WALK: f64 = 1e-4;
 /// The least scale of inputs and outputs, rad.
 const LEAST_SCALE: f64 = 100.0 * unit::ARCSEC;
 
-/// A matching by angles that a network can stand beside.
-pub trait AngleMatching: Model<{ angles::STATES }, 3, Options = ()> {
+/// A linear matching by angles that a network can stand beside.
+pub trait AngleMatching: AngleModel {
     /// What is measured, rad.
     fn measured(&self) -> Vector3<f64>;
-    /// How it depends on the states.
-    fn matrix(&self) -> Rows;
-    /// The states.
-    fn angles(&self) -> &Angles;
     /// How the measurement depends on the deformation.
     fn by_deformation(&self) -> Matrix3<f64>;
     /// The total of a deformation vector.

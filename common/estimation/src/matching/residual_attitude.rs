@@ -8,10 +8,10 @@
 //! 4.5 degrees, and is a product of rotations here; eq 34 drops the state that is wanted and gives it to a network, for which see
 //! [`super::neural`].
 
-use super::angles::{Angles, CONSTANT, Covariance, FLEXURE, Rows, STATES, STATIC, State};
+use super::angle_model::AngleModel;
+use super::angles::{Angles, CONSTANT, FLEXURE, Rows, STATIC};
 use super::neural::AngleMatching;
-use super::{Matching, Model, Motion, Observation, Prediction, Start, View, rows_of};
-use crate::flexure::Flexure;
+use super::{Start, rows_of};
 use frames::{Main, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
@@ -22,12 +22,25 @@ pub struct ResidualAttitude {
     pub angles: Angles,
 }
 
-impl AngleMatching for ResidualAttitude {
-    // 001 eqs 20-22
-    fn measured(&self) -> Vector3<f64> {
-        let Angles { base, a_m, a_s, .. } = self.angles;
-        let r0 = base.relabel::<frames::MainStart, frames::SubStart>();
-        (r0 * a_s * base.inverse() * a_m.inverse()).log().column()
+impl AngleModel for ResidualAttitude {
+    fn base(start: &Start) -> Rot<Main, Sub> {
+        start.rotation
+    }
+
+    fn new(angles: Angles) -> Self {
+        Self { angles }
+    }
+
+    fn angles(&self) -> &Angles {
+        &self.angles
+    }
+
+    fn angles_mut(&mut self) -> &mut Angles {
+        &mut self.angles
+    }
+
+    fn residual(&self) -> Vector3<f64> {
+        self.measured() - self.matrix() * self.angles.x
     }
 
     // 001 eq 23
@@ -38,9 +51,14 @@ impl AngleMatching for ResidualAttitude {
         matrix.fixed_view_mut::<3, 3>(0, FLEXURE).copy_from(&a);
         matrix
     }
+}
 
-    fn angles(&self) -> &Angles {
-        &self.angles
+impl AngleMatching for ResidualAttitude {
+    // 001 eqs 20-22
+    fn measured(&self) -> Vector3<f64> {
+        let Angles { base, a_m, a_s, .. } = self.angles;
+        let r0 = base.relabel::<frames::MainStart, frames::SubStart>();
+        (r0 * a_s * base.inverse() * a_m.inverse()).log().column()
     }
 
     fn by_deformation(&self) -> Matrix3<f64> {
@@ -53,46 +71,11 @@ impl AngleMatching for ResidualAttitude {
     }
 }
 
-impl Matching<STATES, 3> for ResidualAttitude {
-    fn propagate(&mut self) -> Prediction<STATES> {
-        self.angles.propagate()
-    }
-
-    fn observe(&self) -> Observation<STATES, 3> {
-        let matrix = self.matrix();
-        Observation { residual: self.measured() - matrix * self.angles.x, matrix, noise: Angles::measurement_noise() }
-    }
-
-    fn inject(&mut self, error: &State) {
-        self.angles.x += error;
-    }
-}
-
-impl Model<STATES, 3> for ResidualAttitude {
-    type Options = ();
-
-    fn begin(_: &(), start: &Start) -> (Self, Covariance) {
-        let (angles, p) = Angles::begin(start, start.rotation);
-        (Self { angles }, p)
-    }
-
-    fn advance(&mut self, motion: &Motion) {
-        self.angles.advance(motion);
-    }
-
-    fn set_flexure(&mut self, flexure: [Flexure; 3]) {
-        self.angles.set_flexure(flexure);
-    }
-
-    fn view(&self) -> View<STATES> {
-        self.angles.view()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::matching::conformance::{STEP_S, Voyage, at_constant, matrix_is_the_derivative, start};
+    use crate::matching::{Matching, Model};
     use frames::unit::{ARCSEC, DEGREE};
     use nalgebra::SVector;
 

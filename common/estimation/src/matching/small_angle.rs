@@ -7,10 +7,10 @@
 //!
 //! Corrections: eq 22's arcsin of a quotient is an arctangent.
 
-use super::angles::{Angles, CONSTANT, Covariance, Rows, STATES, STATIC, State};
+use super::angle_model::AngleModel;
+use super::angles::{Angles, CONSTANT, Rows, STATES, STATIC};
 use super::neural::AngleMatching;
-use super::{Matching, Model, Motion, Observation, Prediction, Start, View, rows_of};
-use crate::flexure::Flexure;
+use super::{View, rows_of};
 use frames::{Main, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
@@ -21,10 +21,21 @@ pub struct SmallAngle {
     pub angles: Angles,
 }
 
-impl AngleMatching for SmallAngle {
-    fn measured(&self) -> Vector3<f64> {
-        let turned: Rot<Main, Sub> = self.angles.a_m.relabel::<Main, Main>().inverse() * self.angles.a_s.relabel();
-        euler(&turned.matrix())
+impl AngleModel for SmallAngle {
+    fn new(angles: Angles) -> Self {
+        Self { angles }
+    }
+
+    fn angles(&self) -> &Angles {
+        &self.angles
+    }
+
+    fn angles_mut(&mut self) -> &mut Angles {
+        &mut self.angles
+    }
+
+    fn residual(&self) -> Vector3<f64> {
+        self.measured() - self.matrix() * self.angles.x
     }
 
     // 001 eq 37
@@ -34,8 +45,20 @@ impl AngleMatching for SmallAngle {
         matrix
     }
 
-    fn angles(&self) -> &Angles {
-        &self.angles
+    fn total_view(&self) -> View<STATES> {
+        let now = self.angles.now();
+        View {
+            deformation: rotation(Angles::phi_rows() * now),
+            static_part: rotation(rows_of(STATIC) * now),
+            ..self.angles.view()
+        }
+    }
+}
+
+impl AngleMatching for SmallAngle {
+    fn measured(&self) -> Vector3<f64> {
+        let turned: Rot<Main, Sub> = self.angles.a_m.relabel::<Main, Main>().inverse() * self.angles.a_s.relabel();
+        euler(&turned.matrix())
     }
 
     fn by_deformation(&self) -> Matrix3<f64> {
@@ -61,51 +84,11 @@ fn rotation(phi: Vector3<f64>) -> Rot<Main, Sub> {
     (turned * about(Vec3::new(0.0, phi.y, 0.0))).relabel()
 }
 
-impl Matching<STATES, 3> for SmallAngle {
-    fn propagate(&mut self) -> Prediction<STATES> {
-        self.angles.propagate()
-    }
-
-    fn observe(&self) -> Observation<STATES, 3> {
-        let matrix = self.matrix();
-        Observation { residual: self.measured() - matrix * self.angles.x, matrix, noise: Angles::measurement_noise() }
-    }
-
-    fn inject(&mut self, error: &State) {
-        self.angles.x += error;
-    }
-}
-
-impl Model<STATES, 3> for SmallAngle {
-    type Options = ();
-
-    fn begin(_: &(), start: &Start) -> (Self, Covariance) {
-        let (angles, p) = Angles::begin(start, Rot::identity());
-        (Self { angles }, p)
-    }
-
-    fn advance(&mut self, motion: &Motion) {
-        self.angles.advance(motion);
-    }
-
-    fn set_flexure(&mut self, flexure: [Flexure; 3]) {
-        self.angles.set_flexure(flexure);
-    }
-
-    fn view(&self) -> View<STATES> {
-        let now = self.angles.now();
-        View {
-            deformation: rotation(Angles::phi_rows() * now),
-            static_part: rotation(rows_of(STATIC) * now),
-            ..self.angles.view()
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::matching::conformance::{STEP_S, Voyage, at_constant, matrix_is_the_derivative, start};
+    use crate::matching::{Matching, Model};
     use frames::unit::{ARCSEC, DEGREE};
     use nalgebra::SVector;
 
