@@ -3,6 +3,7 @@
 pub mod angle_model;
 pub mod angles;
 pub mod attitude_dcm;
+mod chain;
 #[cfg(test)]
 pub(crate) mod conformance;
 mod constant;

@@ -26,13 +26,13 @@
 //! apart; the constant must not be tied to the first deformation alone, for the delay shifts the frames' start too; the elements (1,2), (3,1),
 //! (3,2) of the matching matrix give way to the rotation vector. Static part and flexure share one Jacobian, see `so3`.
 
-use super::constant::{Since, drifted};
-use super::grade::{Grade, MATCHING_SIGMA, STATIC_RATE_SIGMA};
-use super::retiming::{Retimed, Together};
+use super::chain::{self, Chain, Link};
+use super::grade::{MATCHING_SIGMA, STATIC_RATE_SIGMA};
+use super::retiming::Together;
 use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
 use crate::align::Lag;
 use crate::flexure::Flexure;
-use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
+use frames::{Main, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// Size of the error state.
@@ -42,8 +42,8 @@ const STATIC_RATE: usize = 3;
 const FLEXURE: usize = 6;
 const FLEXURE_RATE: usize = 9;
 const CONSTANT: usize = 12;
-const BIAS: usize = 15;
-const DELAY: usize = 18;
+const BIAS: usize = CONSTANT + chain::BIAS;
+const DELAY: usize = CONSTANT + chain::DELAY;
 const SKEW: usize = 19;
 
 /// Which use of the model.
@@ -75,9 +75,7 @@ struct State {
     static_rate: Vec3<Main>,
     theta: Vector3<f64>,
     theta_rate: Vector3<f64>,
-    constant: Rot<MainStart, SubStart>,
-    bias: Vec3<Main>,
-    delay: f64,
+    link: Link,
     skew: f64,
 }
 
@@ -88,9 +86,7 @@ impl State {
         self.static_rate += three(STATIC_RATE);
         self.theta += error.fixed_rows::<3>(FLEXURE);
         self.theta_rate += error.fixed_rows::<3>(FLEXURE_RATE);
-        self.constant = Rot::<MainStart, MainStart>::exp(-three(CONSTANT).relabel::<MainStart>()) * self.constant;
-        self.bias += three(BIAS);
-        self.delay += error[DELAY];
+        self.link = self.link.moved(error, CONSTANT);
         self.skew += error[SKEW];
         self
     }
@@ -100,14 +96,9 @@ impl State {
         Rot::<Main, Main>::exp(Vec3::from_column(self.theta)) * self.static_part
     }
 
-    /// The deformation by the attitudes of the moment that the sub unit felt.
-    fn seen(&self, together: &Together, delay: f64) -> Rot<Main, Sub> {
-        Rot::<Main, Main>::exp(together.w_m * delay) * together.a_m.inverse() * self.constant * together.a_s
-    }
-
     // 002 eq 16
     fn residual(&self, together: &Together) -> Vector3<f64> {
-        (self.seen(together, self.delay) * self.predicted().inverse()).log().column()
+        (self.link.seen(together, self.link.delay) * self.predicted().inverse()).log().column()
     }
 }
 
@@ -115,13 +106,9 @@ impl State {
 #[derive(Clone, Debug)]
 pub struct Quaternion {
     options: Options,
-    grade: Grade,
     flexure: [Flexure; 3],
     state: State,
-    attitudes: Retimed,
-    /// Whether the constant has been set from attitudes of one moment.
-    begun: bool,
-    since: Since,
+    chain: Chain,
 }
 
 impl Quaternion {
@@ -134,22 +121,17 @@ impl Quaternion {
 
     /// By how much the sub unit's data are older than their stamps, s.
     fn delay(&self) -> f64 {
-        self.attitudes.shift() + self.state.delay + self.state.skew * self.since.time_s
+        self.chain.delay(&self.state.link) + self.state.skew * self.chain.since.time_s
     }
 
-    /// The constant by the deformation as it is believed to be; its error is that of the states that it is made of.
+    /// The constant by the deformation as it is believed to be.
     fn begin_constant(&mut self, together: &Together, prediction: &mut Prediction<STATES>) {
-        self.begun = true;
-        let turned = Rot::<Main, Main>::exp(together.w_m * self.state.delay);
-        self.state.constant = together.a_m * turned.inverse() * self.state.predicted() * together.a_s.inverse();
-        let a = together.a_m.matrix();
+        let minus_a = -together.a_m.matrix();
         let mut made_of = SMatrix::<f64, STATES, STATES>::identity();
-        made_of.fixed_view_mut::<3, 3>(CONSTANT, CONSTANT).fill(0.0);
-        made_of.fixed_view_mut::<3, 3>(CONSTANT, STATIC).copy_from(&-a);
-        made_of.fixed_view_mut::<3, 3>(CONSTANT, FLEXURE).copy_from(&-a);
-        made_of.fixed_view_mut::<3, 1>(CONSTANT, DELAY).copy_from(&(a * together.w_m.column()));
-        prediction.transition = made_of * prediction.transition;
-        prediction.noise = made_of * prediction.noise * made_of.transpose();
+        made_of.fixed_view_mut::<3, 3>(CONSTANT, STATIC).copy_from(&minus_a);
+        made_of.fixed_view_mut::<3, 3>(CONSTANT, FLEXURE).copy_from(&minus_a);
+        let deformation = self.state.predicted();
+        self.chain.set(&mut self.state.link, together, deformation, made_of, prediction);
     }
 
     /// Turn of the deformation from the moment that the sub unit felt to now, written into its rows and noise.
@@ -162,7 +144,7 @@ impl Quaternion {
         for axis in 0..3 {
             rows[(axis, STATIC_RATE + axis)] -= late_s;
             if !self.options.rigid {
-                let (ahead, by) = self.ahead(axis, self.since.time_s, late_s);
+                let (ahead, by) = self.ahead(axis, self.chain.since.time_s, late_s);
                 turn[axis] += ahead;
                 rows[(axis, FLEXURE + axis)] -= by[0];
                 rows[(axis, FLEXURE_RATE + axis)] -= by[1];
@@ -176,7 +158,7 @@ impl Quaternion {
 
 impl Matching<STATES, 3> for Quaternion {
     fn propagate(&mut self) -> Prediction<STATES> {
-        let since = std::mem::take(&mut self.since);
+        let since = std::mem::take(&mut self.chain.since);
         let h = since.time_s;
         let mut transition = SMatrix::<f64, STATES, STATES>::identity();
         let mut noise = SMatrix::<f64, STATES, STATES>::zeros();
@@ -184,7 +166,7 @@ impl Matching<STATES, 3> for Quaternion {
         state.static_part = (Rot::<Main, Main>::exp(state.static_rate * h) * state.static_part).normalised();
         for axis in 0..3 {
             let s = STATIC + axis;
-            self.grade.place_static(h, s, STATIC_RATE + axis, &mut transition, &mut noise);
+            self.chain.grade.place_static(h, s, STATIC_RATE + axis, &mut transition, &mut noise);
             noise[(s, s)] += self.options.static_walk * h;
             if self.options.rigid {
                 continue;
@@ -195,11 +177,11 @@ impl Matching<STATES, 3> for Quaternion {
             state.theta[axis] = transition[(x, x)] * theta + transition[(x, v)] * rate;
             state.theta_rate[axis] = transition[(v, x)] * theta + transition[(v, v)] * rate;
         }
-        state.delay += state.skew * h;
+        state.link.delay += state.skew * h;
         transition[(DELAY, SKEW)] = h;
         since.place(CONSTANT, BIAS, &mut transition, &mut noise);
         let mut prediction = Prediction { transition, noise };
-        if let Some(together) = self.attitudes.together().filter(|_| !self.begun) {
+        if let Some(together) = self.chain.first() {
             self.begin_constant(&together, &mut prediction);
         }
         prediction
@@ -209,23 +191,22 @@ impl Matching<STATES, 3> for Quaternion {
         let mut matrix = SMatrix::<f64, 3, STATES>::zeros();
         let mut residual = Vector3::zeros();
         // without attitudes of one moment there is nothing to compare
-        if let Some(together) = self.attitudes.together().filter(|_| self.begun) {
+        if let Some(together) = self.chain.together() {
             residual = self.state.residual(&together);
             matrix.fixed_view_mut::<3, 3>(0, STATIC).fill_with_identity();
             matrix.fixed_view_mut::<3, 3>(0, FLEXURE).fill_with_identity();
-            matrix.fixed_view_mut::<3, 3>(0, CONSTANT).copy_from(&together.a_m.inverse().matrix());
-            matrix.set_column(DELAY, &-together.w_m.column());
+            self.chain.observe(&together, &mut matrix);
         }
         Observation { residual, matrix, noise: Matrix3::identity() * MATCHING_SIGMA.powi(2) }
     }
 
     fn inject(&mut self, error: &SVector<f64, STATES>) {
         self.state = self.state.moved(error);
-        self.attitudes.absorb(&mut self.state.delay);
+        self.chain.attitudes.absorb(&mut self.state.link.delay);
     }
 
     fn residual_after(&self, error: &SVector<f64, STATES>) -> Vector3<f64> {
-        let together = self.attitudes.together().filter(|_| self.begun);
+        let together = self.chain.together();
         together.map_or(Vector3::zeros(), |together| self.state.moved(error).residual(&together))
     }
 }
@@ -242,46 +223,26 @@ impl Model<STATES, 3> for Quaternion {
             if !options.rigid {
                 start.flexure[axis].place_stationary(FLEXURE + axis, FLEXURE_RATE + axis, &mut p);
             }
-            p[(BIAS + axis, BIAS + axis)] = start.grade.bias_variance();
         }
-        p[(DELAY, DELAY)] = options.delay.sigma.powi(2);
+        let (chain, link) = Chain::begin(CONSTANT, &options.delay, start.grade, &mut p);
         p[(SKEW, SKEW)] = options.delay.skew_sigma.powi(2);
         let state = State {
             static_part: start.rotation,
             static_rate: Vec3::ZERO,
             theta: Vector3::zeros(),
             theta_rate: Vector3::zeros(),
-            constant: Rot::identity(),
-            bias: Vec3::ZERO,
-            delay: 0.0,
+            link,
             skew: 0.0,
         };
-        let model = Self {
-            options: *options,
-            grade: start.grade,
-            flexure: start.flexure,
-            state,
-            attitudes: Retimed::new(options.delay.retimed),
-            begun: false,
-            since: Since::default(),
-        };
-        (model, p)
+        (Self { options: *options, flexure: start.flexure, state, chain }, p)
     }
 
     fn delayed(&mut self, lag: &Lag, p: &mut SMatrix<f64, STATES, STATES>) {
-        if self.options.delay.sigma > 0.0 {
-            self.state.delay = lag.delay;
-            self.attitudes.absorb(&mut self.state.delay);
-            p[(DELAY, DELAY)] = lag.sigma.powi(2);
-        }
+        self.chain.delayed(&mut self.state.link, lag, p);
     }
 
     fn advance(&mut self, motion: &Motion) {
-        if self.begun {
-            self.state.constant = drifted(self.state.constant, self.state.bias, motion);
-        }
-        self.since.advance(motion, &self.grade);
-        self.attitudes.advance(motion);
+        self.chain.advance(&mut self.state.link, motion);
     }
 
     fn set_flexure(&mut self, flexure: [Flexure; 3]) {
@@ -295,15 +256,11 @@ impl Model<STATES, 3> for Quaternion {
         rate_rows.fixed_view_mut::<3, 3>(0, FLEXURE_RATE).fill_diagonal(-1.0);
         let mut rows = SMatrix::<f64, 3, STATES>::zeros();
         let mut noise = Matrix3::zeros();
-        let seen = match self.attitudes.together().filter(|_| self.begun) {
+        let seen = match self.chain.together() {
             Some(together) => {
-                let back = together.a_m.inverse().matrix();
-                rows.fixed_view_mut::<3, 3>(0, CONSTANT).copy_from(&back);
-                rows.fixed_view_mut::<3, 3>(0, BIAS).copy_from(&(-back * self.since.by_bias));
-                rows.set_column(DELAY, &-together.w_m.column());
-                rows.set_column(SKEW, &(-together.w_m.column() * self.since.time_s));
-                noise.fill_diagonal(self.since.walk);
-                self.state.seen(&together, self.delay() - self.attitudes.shift())
+                self.chain.view(&together, &mut rows, &mut noise);
+                rows.set_column(SKEW, &(-together.w_m.column() * self.chain.since.time_s));
+                self.state.link.seen(&together, self.delay() - self.chain.attitudes.shift())
             }
             None => {
                 rows.copy_from(&static_rows);
@@ -312,7 +269,6 @@ impl Model<STATES, 3> for Quaternion {
             }
         };
         let turn = self.carry(&mut rows, &mut noise);
-        let told = |value: f64, sigma: f64, place: usize| (sigma > 0.0).then_some((value, place));
         View {
             deformation: Rot::<Main, Main>::exp(turn) * seen,
             rows,
@@ -321,9 +277,9 @@ impl Model<STATES, 3> for Quaternion {
             static_rows,
             rate: Vec3::from_column(self.state.theta_rate) + self.state.static_rate,
             rate_rows,
-            drift: self.state.bias,
-            delay: told(self.delay(), self.options.delay.sigma, DELAY),
-            skew: told(self.state.skew, self.options.delay.skew_sigma, SKEW),
+            drift: self.state.link.bias,
+            delay: self.chain.told(self.delay()),
+            skew: (self.options.delay.skew_sigma > 0.0).then_some((self.state.skew, SKEW)),
         }
     }
 }

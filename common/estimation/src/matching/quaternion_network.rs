@@ -19,22 +19,21 @@
 //!
 //! Corrections to the paper: those of `quaternion`.
 
-use super::constant::{Since, drifted};
-use super::grade::{Grade, MATCHING_SIGMA};
+use super::chain::{self, Chain, Link};
+use super::grade::MATCHING_SIGMA;
 use super::network::{Network, OFFSET, WEIGHTS};
 use super::quaternion::DelayOptions;
-use super::retiming::{Retimed, Together};
+use super::retiming::Together;
 use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
 use crate::align::Lag;
 use crate::flexure::Flexure;
-use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
+use frames::{Main, Rot, Sub, Vec3, unit};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// Size of the error state.
 pub const STATES: usize = WEIGHTS + 7;
 const CONSTANT: usize = WEIGHTS;
-const BIAS: usize = WEIGHTS + 3;
-const DELAY: usize = WEIGHTS + 6;
+const BIAS: usize = CONSTANT + chain::BIAS;
 
 /// One unit of the network's input and output, rad.
 const SCALE: f64 = 100.0 * unit::ARCSEC;
@@ -78,31 +77,21 @@ pub struct Options {
 #[derive(Clone, Debug)]
 struct State {
     network: Network,
-    constant: Rot<MainStart, SubStart>,
-    bias: Vec3<Main>,
-    delay: f64,
+    link: Link,
 }
 
 /// The model.
 #[derive(Clone, Debug)]
 pub struct QuaternionNetwork {
     options: Options,
-    grade: Grade,
     installation: Rot<Main, Sub>,
     state: State,
-    attitudes: Retimed,
-    begun: bool,
-    since: Since,
+    chain: Chain,
     time_s: f64,
     previous: Vector3<f64>,
 }
 
 impl QuaternionNetwork {
-    /// Where the units show the same moment and the constant is known.
-    fn together(&self) -> Option<Together> {
-        self.attitudes.together().filter(|_| self.begun)
-    }
-
     fn input(&self, together: &Together) -> Vector3<f64> {
         match self.options.input {
             Input::Measurement => {
@@ -121,47 +110,33 @@ impl QuaternionNetwork {
         Rot::<Main, Main>::exp(Vec3::from_column(output * SCALE)) * self.installation
     }
 
-    fn seen(&self, state: &State, together: &Together) -> Rot<Main, Sub> {
-        Rot::<Main, Main>::exp(together.w_m * state.delay) * together.a_m.inverse() * state.constant * together.a_s
-    }
-
     // 002 eq 17
     fn residual(&self, state: &State, together: &Together) -> Vector3<f64> {
         let output = state.network.output(&self.input(together));
-        (self.seen(state, together) * self.deformation(output).inverse()).log().column()
+        (state.link.seen(together, state.link.delay) * self.deformation(output).inverse()).log().column()
     }
 
     fn moved(&self, error: &SVector<f64, STATES>) -> State {
         let mut state = self.state.clone();
         state.network.weights += error.fixed_rows::<WEIGHTS>(0);
-        let psi = Vec3::<MainStart>::from_column(error.fixed_rows::<3>(CONSTANT).into());
-        state.constant = Rot::<MainStart, MainStart>::exp(-psi) * state.constant;
-        state.bias += Vec3::from_column(error.fixed_rows::<3>(BIAS).into());
-        state.delay += error[DELAY];
+        state.link = state.link.moved(error, CONSTANT);
         state
     }
 
-    /// The constant by the network's output; its error is that of what it is made of.
+    /// The constant by the network's output.
     fn begin_constant(&mut self, together: &Together, prediction: &mut Prediction<STATES>) {
-        self.begun = true;
         let input = self.input(together);
-        let turned = Rot::<Main, Main>::exp(together.w_m * self.state.delay);
         let deformation = self.deformation(self.state.network.output(&input));
-        self.state.constant = together.a_m * turned.inverse() * deformation * together.a_s.inverse();
-        let a = together.a_m.matrix();
-        let mut made_of = SMatrix::<f64, STATES, STATES>::identity();
-        made_of.fixed_view_mut::<3, 3>(CONSTANT, CONSTANT).fill(0.0);
         let by_weights = self.state.network.by_weights(&input);
-        made_of.fixed_view_mut::<3, WEIGHTS>(CONSTANT, 0).copy_from(&(-a * by_weights * SCALE));
-        made_of.fixed_view_mut::<3, 1>(CONSTANT, DELAY).copy_from(&(a * together.w_m.column()));
-        prediction.transition = made_of * prediction.transition;
-        prediction.noise = made_of * prediction.noise * made_of.transpose();
+        let mut made_of = SMatrix::<f64, STATES, STATES>::identity();
+        made_of.fixed_view_mut::<3, WEIGHTS>(CONSTANT, 0).copy_from(&(-together.a_m.matrix() * by_weights * SCALE));
+        self.chain.set(&mut self.state.link, together, deformation, made_of, prediction);
     }
 }
 
 impl Matching<STATES, 3> for QuaternionNetwork {
     fn propagate(&mut self) -> Prediction<STATES> {
-        let since = std::mem::take(&mut self.since);
+        let since = std::mem::take(&mut self.chain.since);
         let h = since.time_s;
         let mut transition = SMatrix::<f64, STATES, STATES>::identity();
         let mut noise = SMatrix::<f64, STATES, STATES>::zeros();
@@ -171,7 +146,7 @@ impl Matching<STATES, 3> for QuaternionNetwork {
         }
         since.place(CONSTANT, BIAS, &mut transition, &mut noise);
         let mut prediction = Prediction { transition, noise };
-        if let Some(together) = self.attitudes.together().filter(|_| !self.begun) {
+        if let Some(together) = self.chain.first() {
             self.begin_constant(&together, &mut prediction);
         }
         prediction
@@ -180,26 +155,25 @@ impl Matching<STATES, 3> for QuaternionNetwork {
     fn observe(&self) -> Observation<STATES, 3> {
         let mut matrix = SMatrix::<f64, 3, STATES>::zeros();
         let mut residual = Vector3::zeros();
-        if let Some(together) = self.together() {
+        if let Some(together) = self.chain.together() {
             residual = self.residual(&self.state, &together);
             let by_weights = self.state.network.by_weights(&self.input(&together));
             matrix.fixed_view_mut::<3, WEIGHTS>(0, 0).copy_from(&(by_weights * SCALE));
-            matrix.fixed_view_mut::<3, 3>(0, CONSTANT).copy_from(&together.a_m.inverse().matrix());
-            matrix.set_column(DELAY, &-together.w_m.column());
+            self.chain.observe(&together, &mut matrix);
         }
         Observation { residual, matrix, noise: Matrix3::identity() * MATCHING_SIGMA.powi(2) }
     }
 
     fn inject(&mut self, error: &SVector<f64, STATES>) {
         self.state = self.moved(error);
-        if let Some(together) = self.together() {
+        if let Some(together) = self.chain.together() {
             self.previous = self.state.network.output(&self.input(&together));
         }
-        self.attitudes.absorb(&mut self.state.delay);
+        self.chain.attitudes.absorb(&mut self.state.link.delay);
     }
 
     fn residual_after(&self, error: &SVector<f64, STATES>) -> Vector3<f64> {
-        self.together().map_or(Vector3::zeros(), |together| self.residual(&self.moved(error), &together))
+        self.chain.together().map_or(Vector3::zeros(), |together| self.residual(&self.moved(error), &together))
     }
 }
 
@@ -211,23 +185,14 @@ impl Model<STATES, 3> for QuaternionNetwork {
         for i in 0..WEIGHTS {
             p[(i, i)] = if i < OFFSET { WEIGHT_SIGMA } else { OFFSET_SIGMA }.powi(2);
         }
-        p.fixed_view_mut::<3, 3>(BIAS, BIAS).fill_diagonal(start.grade.bias_variance());
-        p[(DELAY, DELAY)] = options.delay.sigma.powi(2);
+        let (chain, link) = Chain::begin(CONSTANT, &options.delay, start.grade, &mut p);
         let [inner, outer] = FIRST_WEIGHTS;
-        let state = State {
-            network: Network::random(options.seed, inner, outer),
-            constant: Rot::identity(),
-            bias: Vec3::ZERO,
-            delay: 0.0,
-        };
+        let state = State { network: Network::random(options.seed, inner, outer), link };
         let model = Self {
             options: *options,
-            grade: start.grade,
             installation: start.rotation,
             state,
-            attitudes: Retimed::new(options.delay.retimed),
-            begun: false,
-            since: Since::default(),
+            chain,
             time_s: 0.0,
             previous: Vector3::zeros(),
         };
@@ -235,19 +200,11 @@ impl Model<STATES, 3> for QuaternionNetwork {
     }
 
     fn delayed(&mut self, lag: &Lag, p: &mut SMatrix<f64, STATES, STATES>) {
-        if self.options.delay.sigma > 0.0 {
-            self.state.delay = lag.delay;
-            self.attitudes.absorb(&mut self.state.delay);
-            p[(DELAY, DELAY)] = lag.sigma.powi(2);
-        }
+        self.chain.delayed(&mut self.state.link, lag, p);
     }
 
     fn advance(&mut self, motion: &Motion) {
-        if self.begun {
-            self.state.constant = drifted(self.state.constant, self.state.bias, motion);
-        }
-        self.since.advance(motion, &self.grade);
-        self.attitudes.advance(motion);
+        self.chain.advance(&mut self.state.link, motion);
         self.time_s = motion.time_s;
     }
 
@@ -257,14 +214,10 @@ impl Model<STATES, 3> for QuaternionNetwork {
     fn view(&self) -> View<STATES> {
         let mut rows = SMatrix::<f64, 3, STATES>::zeros();
         let mut noise = Matrix3::zeros();
-        let deformation = match self.together() {
+        let deformation = match self.chain.together() {
             Some(together) => {
-                let back = together.a_m.inverse().matrix();
-                rows.fixed_view_mut::<3, 3>(0, CONSTANT).copy_from(&back);
-                rows.fixed_view_mut::<3, 3>(0, BIAS).copy_from(&(-back * self.since.by_bias));
-                rows.set_column(DELAY, &-together.w_m.column());
-                noise.fill_diagonal(self.since.walk);
-                self.seen(&self.state, &together)
+                self.chain.view(&together, &mut rows, &mut noise);
+                self.state.link.seen(&together, self.state.link.delay)
             }
             None => {
                 rows.fixed_view_mut::<3, 3>(0, OFFSET).fill_diagonal(-SCALE);
@@ -280,8 +233,8 @@ impl Model<STATES, 3> for QuaternionNetwork {
             static_rows: rows,
             rate: Vec3::ZERO,
             rate_rows: SMatrix::zeros(),
-            drift: self.state.bias,
-            delay: (self.options.delay.sigma > 0.0).then_some((self.attitudes.shift() + self.state.delay, DELAY)),
+            drift: self.state.link.bias,
+            delay: self.chain.told(self.chain.delay(&self.state.link)),
             skew: None,
         }
     }
@@ -292,6 +245,7 @@ mod tests {
     use super::*;
     use crate::filter::{Filter, symmetrise};
     use crate::matching::conformance::{STEP_S, Voyage, matrix_is_the_derivative};
+    use crate::matching::grade::Grade;
     use frames::unit::ARCSEC;
 
     fn voyage() -> Voyage {
@@ -315,9 +269,9 @@ mod tests {
         let voyage = voyage();
         let (mut model, _) = begun(Options { input, ..Options::default() });
         (1..=k).for_each(|k| model.advance(&voyage.motion(k)));
-        model.begun = true;
-        model.state.constant = voyage.deformation(0.0).relabel();
-        let together = model.together().expect("no delay");
+        model.chain.begun = true;
+        model.state.link.constant = voyage.deformation(0.0).relabel();
+        let together = model.chain.together().expect("no delay");
         let truth = voyage.deformation(k as f64 * STEP_S).log().column() / SCALE;
         let rest = truth - model.state.network.output(&model.input(&together));
         let mut weights = model.state.network.weights.fixed_rows_mut::<3>(OFFSET);

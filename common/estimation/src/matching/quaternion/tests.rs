@@ -1,5 +1,7 @@
 use super::*;
 use crate::matching::conformance::{STEP_S, Voyage, matrix_is_the_derivative};
+use crate::matching::constant::Since;
+use crate::matching::grade::Grade;
 use frames::unit::ARCSEC;
 
 const RETIMED: DelayOptions = DelayOptions { sigma: 0.05, skew_sigma: 1e-4, retimed: true };
@@ -24,19 +26,19 @@ fn start() -> Start {
 fn at_truth(voyage: &Voyage, shift: f64, k: usize) -> Quaternion {
     let (mut model, _) = Quaternion::begin(&Options { delay: RETIMED, ..Options::default() }, &start());
     let mut known = shift;
-    model.attitudes.absorb(&mut known);
+    model.chain.attitudes.absorb(&mut known);
     (1..=k).for_each(|k| model.advance(&voyage.motion(k)));
     let moment = k as f64 * STEP_S - voyage.delay_s.max(0.0);
     let (theta, rate) = voyage.theta(moment);
     model.state.static_part = voyage.installation;
     (model.state.theta, model.state.theta_rate) = (theta.column(), rate.column());
-    model.state.delay = voyage.delay_s - shift;
+    model.state.link.delay = voyage.delay_s - shift;
     // the exact constant of the two starting frames
     let main = voyage.attitude(0.0);
     let sub = voyage.attitude(-voyage.delay_s) * voyage.deformation(-voyage.delay_s);
-    model.state.constant = (main.inverse() * sub).relabel();
-    model.begun = true;
-    model.since = Since::default();
+    model.state.link.constant = (main.inverse() * sub).relabel();
+    model.chain.begun = true;
+    model.chain.since = Since::default();
     model
 }
 
@@ -75,7 +77,7 @@ fn the_transition_is_the_derivative() {
     let base = at_truth(&voyage, 0.02, 137);
     let moved = |error: &SVector<f64, STATES>| {
         let mut model = base.clone();
-        model.since = Since::default();
+        model.chain.since = Since::default();
         model.state = model.state.moved(error);
         (138..138 + steps).for_each(|k| model.advance(&voyage.motion(k)));
         (model.propagate(), model.state)
@@ -92,9 +94,9 @@ fn the_transition_is_the_derivative() {
         put(STATIC_RATE, three(state.static_rate - nominal.static_rate));
         put(FLEXURE, state.theta - nominal.theta);
         put(FLEXURE_RATE, state.theta_rate - nominal.theta_rate);
-        put(CONSTANT, -(state.constant * nominal.constant.inverse()).log().column());
-        put(BIAS, three(state.bias - nominal.bias));
-        found[DELAY] = state.delay - nominal.delay;
+        put(CONSTANT, -(state.link.constant * nominal.link.constant.inverse()).log().column());
+        put(BIAS, three(state.link.bias - nominal.link.bias));
+        found[DELAY] = state.link.delay - nominal.link.delay;
         found[SKEW] = state.skew - nominal.skew;
         let difference = (found / 1e-6 - transition.column(i)).amax();
         assert!(difference < 1e-5, "state {i}: {difference:e}");
@@ -106,12 +108,12 @@ fn the_noise_is_the_integral_of_the_densities() {
     let options = Options { static_walk: 2e-12, ..Options::default() };
     let run = |parts: usize| {
         let (mut model, _) = Quaternion::begin(&options, &start());
-        model.grade.main.arw = 1e-7;
-        model.begun = true;
+        model.chain.grade.main.arw = 1e-7;
+        model.chain.begun = true;
         let mut p = SMatrix::<f64, STATES, STATES>::zeros();
         for _ in 0..parts {
-            model.since.time_s = 0.5 / parts as f64;
-            model.since.walk = 1e-14 * model.since.time_s;
+            model.chain.since.time_s = 0.5 / parts as f64;
+            model.chain.since.walk = 1e-14 * model.chain.since.time_s;
             let Prediction { transition, noise } = model.propagate();
             p = transition * p * transition.transpose() + noise;
         }
@@ -127,11 +129,11 @@ fn the_constant_begins_with_the_error_of_what_it_is_made_of() {
     let voyage = voyage(0.2);
     let (mut model, p) = Quaternion::begin(&Options { delay: RETIMED, ..Options::default() }, &start());
     let mut known = 0.2;
-    model.attitudes.absorb(&mut known);
+    model.chain.attitudes.absorb(&mut known);
     for k in 1..=10 {
         model.advance(&voyage.motion(k));
     }
-    assert!(model.attitudes.together().is_none(), "the main unit's attitude before the start is not known");
+    assert!(model.chain.attitudes.together().is_none(), "the main unit's attitude before the start is not known");
     assert_eq!(model.observe().matrix.amax(), 0.0);
     (11..=40).for_each(|k| model.advance(&voyage.motion(k)));
     let Prediction { transition, noise } = model.propagate();
@@ -159,9 +161,12 @@ fn a_rest_beyond_a_millisecond_is_re_timed_and_nothing_else_moves() {
     let mut error = SVector::<f64, STATES>::zeros();
     error[DELAY] = 1e-9;
     model.inject(&error);
-    assert!(model.state.delay.abs() < 1e-15 && (model.attitudes.shift() - 0.03).abs() < 2e-9);
+    assert!(model.state.link.delay.abs() < 1e-15 && (model.chain.attitudes.shift() - 0.03).abs() < 2e-9);
     assert!(
         (model.observe().residual - before).norm() < 0.5 * ARCSEC && model.observe().residual.norm() < 0.01 * ARCSEC
     );
-    assert_eq!(model.view().delay.map(|(value, _)| value), Some(model.attitudes.shift() + model.state.delay));
+    assert_eq!(
+        model.view().delay.map(|(value, _)| value),
+        Some(model.chain.attitudes.shift() + model.state.link.delay)
+    );
 }
