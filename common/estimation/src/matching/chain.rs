@@ -1,11 +1,10 @@
 //! The units' attitudes with the constant between them: `D = Exp(w tau) A_m^T N A_s`, where the sub unit's stamps may be late.
 
-use super::Motion;
-use super::Prediction;
 use super::constant::{Since, drifted};
 use super::grade::Grade;
 use super::quaternion::DelayOptions;
 use super::retiming::{Retimed, Together};
+use super::{Motion, Prediction};
 use crate::align::Lag;
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
