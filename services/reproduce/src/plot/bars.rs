@@ -1,5 +1,5 @@
-use super::frame::{Entry, Sign, legend, legend_height, letters, tick, told};
-use super::{Area, Drawn, GRID, INK, colour};
+use super::frame::{Entry, Sign, legend, legend_height, letters, mesh, tick, told};
+use super::{Area, Drawn, INK, colour};
 use experiments::Bars;
 use plotters::chart::ChartBuilder;
 use plotters::prelude::{PathElement, Rectangle, Text};
@@ -46,16 +46,9 @@ pub fn draw(area: &Area, bars: &Bars) -> Drawn {
         .x_label_area_size(58)
         .margin_left(NAMES)
         .build_cartesian_2d(x.clone(), groups..0.0)?;
-    chart
-        .configure_mesh()
+    mesh(&mut chart)
         .disable_y_mesh()
         .disable_y_axis()
-        .light_line_style(plotters::style::TRANSPARENT)
-        .bold_line_style(GRID)
-        .axis_style(INK)
-        .label_style(letters(HPos::Center, VPos::Center))
-        .axis_desc_style(letters(HPos::Center, VPos::Center))
-        .x_labels(9)
         .x_label_formatter(&|value| tick(*value, &x))
         .x_desc(told(&bars.value))
         .draw()?;

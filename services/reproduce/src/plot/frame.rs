@@ -2,7 +2,7 @@
 
 use super::{Area, Drawn, GRID, INK, WIDTH};
 use experiments::Label;
-use plotters::chart::{ChartBuilder, ChartContext};
+use plotters::chart::{ChartBuilder, ChartContext, MeshStyle};
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::{Cartesian2d, PathElement, Rectangle, SVGBackend, ShapeStyle, Text};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -10,6 +10,8 @@ use plotters::style::{IntoFont, TextStyle};
 use std::ops::Range;
 
 pub type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+pub type Mesh<'a, 'b, 'c> = MeshStyle<'a, 'c, RangedCoordf64, RangedCoordf64, SVGBackend<'b>>;
 
 /// Size that the backend divides by about 1.24 for its letters.
 const LETTERS: i32 = 19;
@@ -122,14 +124,7 @@ pub fn chart<'a, 'b>(
         .y_label_area_size(LEFT - 8)
         .build_cartesian_2d(x.clone(), y.clone())?;
     let [x_label, y_label] = labels.map(told);
-    chart
-        .configure_mesh()
-        .light_line_style(plotters::style::TRANSPARENT)
-        .bold_line_style(GRID)
-        .axis_style(INK)
-        .label_style(letters(HPos::Center, VPos::Center))
-        .axis_desc_style(letters(HPos::Center, VPos::Center))
-        .x_labels(9)
+    mesh(&mut chart)
         .y_labels(7)
         .x_label_formatter(&|value| tick(*value, &x))
         .y_label_formatter(&|value| tick(*value, &y))
@@ -137,6 +132,18 @@ pub fn chart<'a, 'b>(
         .y_desc(y_label)
         .draw()?;
     Ok(chart)
+}
+
+/// Grid and axes as all charts have them, still without labels.
+pub fn mesh<'a, 'b, 'c>(chart: &'c mut Chart<'a, 'b>) -> Mesh<'a, 'b, 'c> {
+    let mut mesh = chart.configure_mesh();
+    mesh.light_line_style(plotters::style::TRANSPARENT)
+        .bold_line_style(GRID)
+        .axis_style(INK)
+        .label_style(letters(HPos::Center, VPos::Center))
+        .axis_desc_style(letters(HPos::Center, VPos::Center))
+        .x_labels(9);
+    mesh
 }
 
 /// A number on an axis, with as many decimals as its range wants.
