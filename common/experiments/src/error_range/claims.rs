@@ -75,43 +75,38 @@ fn why(case: Case, width: Width) -> String {
     .into()
 }
 
-fn coverage_row(case: Case, trials: &[Measured], width: usize, axis: usize) -> Row {
-    let (key, name, kind) = WIDTHS[width];
-    let values = coverages(trials, width, axis);
-    let claim = Claim {
-        id: format!("error-range/{}/coverage/{key}/{}", case.key(), AXES[axis]),
+/// The claim of a range's coverage.
+fn coverage(case: Case, width: usize, axis: &str, paper: Published, why: String) -> Claim {
+    let (key, name, _) = WIDTHS[width];
+    Claim {
+        id: format!("error-range/{}/coverage/{key}/{axis}", case.key()),
         table: table(case, COVERAGE),
         row: name.into(),
-        axis: AXES[axis].into(),
+        axis: axis.into(),
         unit: String::new(),
         bound: Bound::Value(1.0),
-        paper: published(kind, &values),
-        why: why(case, kind),
-    };
-    claim.mean(&values)
+        paper,
+        why,
+    }
+}
+
+fn coverage_row(case: Case, trials: &[Measured], width: usize, axis: usize) -> Row {
+    let (.., kind) = WIDTHS[width];
+    let values = coverages(trials, width, axis);
+    coverage(case, width, AXES[axis], published(kind, &values), why(case, kind)).mean(&values)
 }
 
 /// Over all axes.
 fn pooled_row(case: Case, trials: &[Measured], width: usize) -> Row {
-    let (key, name, _) = WIDTHS[width];
     let values: Vec<f64> =
         trials.iter().map(|trial| mean(&[0, 1, 2].map(|axis| trial.coverage(width, axis)))).collect();
-    let claim = Claim {
-        id: format!("error-range/{}/coverage/{key}/all", case.key()),
-        table: table(case, COVERAGE),
-        row: name.into(),
-        axis: "all".into(),
-        unit: String::new(),
-        bound: Bound::Value(1.0),
-        paper: Published::Nothing("the paper shows each axis".into()),
-        why: "Mean over the axes.".into(),
-    };
-    claim.mean(&values)
+    let paper = Published::Nothing("the paper shows each axis".into());
+    coverage(case, width, "all", paper, "Mean over the axes.".into()).mean(&values)
 }
 
 /// The axis that a range serves worst in a trial.
 fn least_row(case: Case, trials: &[Measured], width: usize) -> Row {
-    let (key, name, kind) = WIDTHS[width];
+    let (.., kind) = WIDTHS[width];
     let least = |trial: &Measured| [0, 1, 2].map(|axis| trial.coverage(width, axis)).into_iter().fold(1.0, f64::min);
     let values: Vec<f64> = trials.iter().map(least).collect();
     let paper = match kind {
@@ -120,17 +115,8 @@ fn least_row(case: Case, trials: &[Measured], width: usize) -> Row {
         }
         _ => Published::Nothing("the paper shows each axis".into()),
     };
-    let claim = Claim {
-        id: format!("error-range/{}/coverage/{key}/least", case.key()),
-        table: table(case, COVERAGE),
-        row: name.into(),
-        axis: "least".into(),
-        unit: String::new(),
-        bound: Bound::Value(1.0),
-        paper,
-        why: "Mean over the trials of each trial's worst axis, which a coupling chooses by its direction.".into(),
-    };
-    claim.mean(&values)
+    let why = "Mean over the trials of each trial's worst axis, which a coupling chooses by its direction.";
+    coverage(case, width, "least", paper, why.into()).mean(&values)
 }
 
 /// The F that would just have held every error.
