@@ -68,3 +68,15 @@ fn conclude(trials: &[Vec<[f64; 3]>]) -> Findings {
     }
     Findings { rows, figures: Vec::new() }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_identity_is_that_of_a_method() {
+        let rows = conclude(&[vec![[1.0, 2.0, 3.0]; METHODS.len()]]).rows;
+        assert_eq!(rows.len(), METHODS.len() * ANGLES.len());
+        assert!(rows.iter().all(|row| row.ours.is_finite()));
+    }
+}
