@@ -7,13 +7,14 @@ use estimation::align::analytic::Analytic;
 use estimation::align::least_squares::LeastSquares;
 use estimation::align::quaternion::Angles;
 use estimation::align::{self, DelayRegistrar, Registrar};
-use estimation::estimator::{self, MakeRegister, Matched, MatchedSettings, So3Estimator};
+use estimation::estimator::{self, DeckEstimator, DeckSettings, MakeRegister, Matched, MatchedSettings};
 use estimation::evaluate::{Coherence, Deviations, ErrorRange, Evaluate};
 use estimation::filter::Filter;
 use estimation::filter::correntropy::Kernel;
 use estimation::filter::predictive::Weight;
 use estimation::identify::{self, Fixed, Windowed};
 use estimation::matching::attitude_dcm::{self, AttitudeDcm};
+use estimation::matching::deck;
 use estimation::matching::exact_attitude::ExactAttitude;
 use estimation::matching::neural::{self, AngleMatching, Form, Neural};
 use estimation::matching::quaternion::{self, DelayOptions, Quaternion};
@@ -26,6 +27,11 @@ use estimation::matching::{self, Model, angles, so3};
 use estimation::synchronise::{self, Synchroniser, Unit};
 use estimation::{Estimator, Identifier};
 use frames::unit::nanoseconds;
+
+/// What is known of a delay of which nothing is told.
+const UNKNOWN_DELAY: DelayOptions = DelayOptions { sigma: 20e-3, skew_sigma: 100e-6, retimed: true };
+/// Standard deviation of a surveyed lever arm, m.
+const LEVER_ARM_SIGMA: f64 = 0.02;
 
 /// The synchroniser of an area.
 pub fn synchroniser(configuration: &Configuration, area: usize) -> Synchroniser {
@@ -44,7 +50,11 @@ pub fn estimator(configuration: &Configuration, area: usize) -> Box<dyn Estimato
     let told = &configuration.areas[area].estimator;
     let delay = told.delay.map_or(DelayOptions::default(), |delay| delay.options());
     match told.matching {
-        MatchingMethod::So3 => Box::new(So3Estimator::new(settings(configuration, area))),
+        MatchingMethod::So3 => own(configuration, area, deck::Options::default(), false),
+        MatchingMethod::Deck => {
+            let delay = told.delay.map_or(UNKNOWN_DELAY, |delay| delay.options());
+            own(configuration, area, deck::Options { lever: lever(configuration, area), delay }, true)
+        }
         MatchingMethod::Rate => matched::<RateMatching, { rate::STATES }, 3>(
             configuration,
             area,
@@ -85,6 +95,26 @@ pub fn estimator(configuration: &Configuration, area: usize) -> Box<dyn Estimato
     }
 }
 
+/// An estimator by the project's own model.
+fn own(configuration: &Configuration, area: usize, options: deck::Options, replay: bool) -> Box<dyn Estimator> {
+    let settings = DeckSettings { area: settings(configuration, area), options, replay };
+    Box::new(DeckEstimator::new(settings, evaluation(configuration, area)))
+}
+
+/// What the accelerometers of both units can tell; `None` where one has none.
+fn lever(configuration: &Configuration, area: usize) -> Option<deck::Lever> {
+    let told = &configuration.areas[area];
+    configuration.main.accel.and(told.accel)?;
+    Some(deck::Lever { accel: accel(configuration, area), arm: told.lever_arm, sigma: LEVER_ARM_SIGMA })
+}
+
+/// Figures of both units' accelerometers together.
+fn accel(configuration: &Configuration, area: usize) -> matching::Accel {
+    let (main, sub) = (configuration.main.accel, configuration.areas[area].accel);
+    let both = |figure: fn(&Accel) -> f64| main.as_ref().map_or(0.0, figure).hypot(sub.as_ref().map_or(0.0, figure));
+    matching::Accel { vrw: both(|accel| accel.vrw), bias: both(|accel| accel.bias) }
+}
+
 fn rodrigues(configuration: &Configuration, area: usize, output: rodrigues::Output) -> Box<dyn Estimator> {
     let Area { estimator, identifier, .. } = &configuration.areas[area];
     let (dynamic_lever_arm, cautious) = (estimator.dynamic_lever_arm, identifier.safety);
@@ -114,10 +144,8 @@ fn matched<M: Model<N, K> + 'static, const N: usize, const K: usize>(
     area: usize,
     options: M::Options,
 ) -> Box<dyn Estimator> {
-    let settings = settings(configuration, area);
+    let (index, settings) = (area, settings(configuration, area));
     let area = &configuration.areas[area];
-    let (main, sub) = (configuration.main.accel, area.accel);
-    let both = |figure: fn(&Accel) -> f64| main.as_ref().map_or(0.0, figure).hypot(sub.as_ref().map_or(0.0, figure));
     let registration: Option<MakeRegister> = match area.estimator.registration {
         RegistrationMethod::Motion => Some(|told| Box::new(Registrar::new(told.grade.scale_variance()))),
         RegistrationMethod::Delay => Some(|_| Box::new(DelayRegistrar::new())),
@@ -130,23 +158,27 @@ fn matched<M: Model<N, K> + 'static, const N: usize, const K: usize>(
         RegistrationMethod::Analytic => Some(|_| Box::new(Analytic::new())),
     };
     let filter = filter(area.estimator.filter);
-    let evaluation: Box<dyn Evaluate> = match area.estimator.range {
-        RangeMethod::Normal => Box::new(Deviations(1.96)),
-        RangeMethod::Naive => Box::new(Deviations(3.0)),
-        RangeMethod::ErrorRange => Box::new(ErrorRange::new(area.estimator.range_factor)),
-        RangeMethod::Coherence => Box::new(Coherence::new(area.estimator.range_factor)),
-    };
     Box::new(Matched::<M, N, K>::new(
         MatchedSettings {
             area: settings,
-            accel: matching::Accel { vrw: both(|accel| accel.vrw), bias: both(|accel| accel.bias) },
+            accel: accel(configuration, index),
             lever_arm: area.lever_arm,
             filter,
             registration,
             options,
         },
-        evaluation,
+        evaluation(configuration, index),
     ))
+}
+
+fn evaluation(configuration: &Configuration, area: usize) -> Box<dyn Evaluate> {
+    let told = &configuration.areas[area].estimator;
+    match told.range {
+        RangeMethod::Normal => Box::new(Deviations(1.96)),
+        RangeMethod::Naive => Box::new(Deviations(3.0)),
+        RangeMethod::ErrorRange => Box::new(ErrorRange::new(told.range_factor)),
+        RangeMethod::Coherence => Box::new(Coherence::new(told.range_factor)),
+    }
 }
 
 fn filter(method: FilterMethod) -> Filter {

@@ -1,7 +1,7 @@
 //! Any matching model with any filter: registration, propagation at each pair, an update at the filter's rate, an output at each pair.
 
 use super::adoption::Adoption;
-use super::{REGISTRATION_DOUBT, Settings, deck, guess, row_major};
+use super::{REGISTRATION_DOUBT, Settings, attitude_of_deck, guess, row_major};
 use crate::Estimator;
 use crate::align::{Register, Registration};
 use crate::evaluate::{Evaluate, Evidence};
@@ -212,7 +212,7 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
         });
         let usable = !flags.contains(Flags::COASTING) && covariance.diagonal().max() < USABLE * USABLE;
         solution.valid = u32::from(usable);
-        deck(&mut solution, pair, deformation, &covariance);
+        attitude_of_deck(&mut solution, pair, deformation, &covariance);
         solution
     }
 }

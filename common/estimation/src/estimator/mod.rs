@@ -1,11 +1,11 @@
 //! The fast stage: registration, then a matching model with its filter, with an output at every pair.
 
 mod adoption;
+pub mod deck;
 mod matched;
-mod so3;
 
+pub use deck::{DeckEstimator, DeckSettings};
 pub use matched::{MakeRegister, Matched, MatchedSettings};
-pub use so3::So3Estimator;
 
 use crate::flexure::Flexure;
 use crate::matching::so3::Grade;
@@ -58,7 +58,7 @@ fn row_major(m: &Matrix3<f64>) -> [f64; 9] {
 }
 
 /// Fills in the attitude of the deck where the main unit's is known.
-fn deck(solution: &mut Solution, pair: &ImuPair, deformation: Rot<Main, Sub>, covariance: &Matrix3<f64>) {
+fn attitude_of_deck(solution: &mut Solution, pair: &ImuPair, deformation: Rot<Main, Sub>, covariance: &Matrix3<f64>) {
     if pair.ins != [0.0; 4] {
         let ship = Rot::<Nav, Main>::from_wxyz(pair.ins);
         let c = ship.matrix();

@@ -3,6 +3,7 @@
 //! | filter | file |
 //! |---|---|
 //! | Kalman, and extended Kalman where the model's measurement is the exact one | [`kalman`] |
+//! | the same one value at a time | [`sequential`] |
 //! | unscented | [`unscented`] |
 //! | maximum correntropy | [`correntropy`] |
 //! | model predictive, before either of them | [`predictive`] |
@@ -10,6 +11,7 @@
 pub mod correntropy;
 pub mod kalman;
 pub mod predictive;
+pub mod sequential;
 pub mod unscented;
 
 use crate::matching::{Matching, Observation};

@@ -70,7 +70,7 @@ impl Voyage {
         let dtheta_m: Vec3<Main> = (m0.inverse() * m1).log();
         let dtheta_s: Vec3<Sub> = (s0.inverse() * s1).log();
         let dvel_i = Vec3::<Inertial>::new(0.0, 0.0, GRAVITY * STEP_S);
-        let lever = self.lever_velocity(to) - self.lever_velocity(from);
+        let lever = self.lever_velocity(to - self.delay_s) - self.lever_velocity(from - self.delay_s);
         Motion {
             time_s: to,
             interval_s: STEP_S,

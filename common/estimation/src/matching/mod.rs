@@ -7,8 +7,10 @@ mod chain;
 #[cfg(test)]
 pub(crate) mod conformance;
 mod constant;
+pub mod deck;
 pub mod exact_attitude;
 mod grade;
+pub mod increment;
 pub mod network;
 pub mod neural;
 pub mod quaternion;

@@ -8,6 +8,7 @@
 //! Four points on SO(3): Lagrange's polynomial through the rotation vectors from the node before the instant.
 
 use super::Motion;
+use super::increment::{Increment, Velocities};
 use frames::{Frame, Main, MainStart, Rot, Sub, SubStart, Vec3};
 use std::collections::VecDeque;
 
@@ -33,6 +34,8 @@ pub struct Together {
     pub a_s: Rot<SubStart, Sub>,
     /// Rate of the main unit, rad/s.
     pub w_m: Vec3<Main>,
+    /// What both units' accelerometers have gained since some instant, each at the moment that it felt.
+    pub gained: Velocities,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +43,14 @@ struct Node {
     time_s: f64,
     a_m: Rot<MainStart, Main>,
     a_s: Rot<SubStart, Sub>,
+    gained: Velocities,
+}
+
+/// Where an instant lies between the nodes, with weight and slope of each of [`POINTS`] nodes from the first on.
+struct Place {
+    left: usize,
+    first: usize,
+    weights: [(f64, f64); POINTS],
 }
 
 /// Attitudes that a filter re-times by the delay as it is known.
@@ -74,6 +85,18 @@ impl Retimed {
         self.together = self.attitudes.together(self.shift);
     }
 
+    /// Takes in what both units felt, with their velocities.
+    pub fn take(&mut self, time_s: f64, step: &Increment) {
+        self.attitudes.take(time_s, step);
+        self.together = self.attitudes.together(self.shift);
+    }
+
+    /// Forgets all attitudes.
+    pub fn restart(&mut self) {
+        self.attitudes.nodes.clear();
+        self.together = None;
+    }
+
     /// Takes over the rest of the delay, if it is large enough and may be; what stays in the rest is left there.
     pub fn absorb(&mut self, rest: &mut f64) {
         if self.absorbs && rest.abs() > REST_S {
@@ -99,49 +122,77 @@ impl Attitudes {
 
     /// Takes in what both units felt.
     pub fn push(&mut self, motion: &Motion) {
-        let oldest_s = motion.time_s - LONGEST_S - MARGIN_S;
+        let Motion { time_s, a_m, a_s, .. } = *motion;
+        self.keep(Node { time_s, a_m, a_s, gained: Velocities::ZERO });
+    }
+
+    /// Takes in what both units felt, with their velocities.
+    fn take(&mut self, time_s: f64, step: &Increment) {
+        let before = self.nodes.back().map_or(Velocities::ZERO, |node| node.gained);
+        let more = step.velocities.unwrap_or(Velocities::ZERO);
+        let gained = Velocities { m: before.m + more.m, s: before.s + more.s };
+        self.keep(Node { time_s, a_m: step.a_m, a_s: step.a_s, gained });
+    }
+
+    fn keep(&mut self, node: Node) {
+        let oldest_s = node.time_s - LONGEST_S - MARGIN_S;
         while self.nodes.len() > POINTS && self.nodes[0].time_s < oldest_s {
             self.nodes.pop_front();
         }
         if self.nodes.len() == self.nodes.capacity() {
             self.nodes.pop_front();
         }
-        self.nodes.push_back(Node { time_s: motion.time_s, a_m: motion.a_m, a_s: motion.a_s });
+        self.nodes.push_back(node);
     }
 
     /// Both units as they are when the sub unit's stamps are late by `shift_s`; `None` while that instant is not covered.
     pub fn together(&self, shift_s: f64) -> Option<Together> {
         let newest = self.nodes.back()?;
-        let (a_m, w_m) = self.at(newest.time_s - shift_s.max(0.0), |node| node.a_m)?;
-        let a_s = match shift_s {
-            0.0.. => newest.a_s,
-            _ => self.at(newest.time_s + shift_s, |node| node.a_s)?.0,
+        let main = self.place(newest.time_s - shift_s.max(0.0))?;
+        let (a_m, w_m) = self.attitude(&main, |node| node.a_m);
+        let m = self.velocity(&main, |node| node.gained.m);
+        let (a_s, s) = match shift_s {
+            0.0.. => (newest.a_s, newest.gained.s),
+            _ => {
+                let sub = self.place(newest.time_s + shift_s)?;
+                (self.attitude(&sub, |node| node.a_s).0, self.velocity(&sub, |node| node.gained.s))
+            }
         };
-        Some(Together { a_m, a_s, w_m })
+        Some(Together { a_m, a_s, w_m, gained: Velocities { m, s } })
     }
 
-    /// An attitude between the nodes, with its rate.
-    fn at<A: Frame, B: Frame>(&self, time_s: f64, of: impl Fn(&Node) -> Rot<A, B>) -> Option<(Rot<A, B>, Vec3<B>)> {
+    /// Where an instant lies; `None` where it is not covered.
+    fn place(&self, time_s: f64) -> Option<Place> {
         let nodes = &self.nodes;
         let right = nodes.partition_point(|node| node.time_s < time_s);
         if right == 0 || right == nodes.len() || nodes.len() < POINTS {
             return None;
         }
-        let first = right.saturating_sub(2).min(nodes.len() - POINTS);
-        let left = &nodes[right - 1];
-        let at = |i: usize| nodes[first + i].time_s - left.time_s;
-        if nodes[right].time_s - left.time_s > HOLE_S {
-            return None;
-        }
-        let (t, origin) = (time_s - left.time_s, of(left));
+        let (left, first) = (right - 1, right.saturating_sub(2).min(nodes.len() - POINTS));
+        let from_s = nodes[left].time_s;
+        let at = |i: usize| nodes[first + i].time_s - from_s;
+        let weights = std::array::from_fn(|i| lagrange(i, time_s - from_s, at));
+        (nodes[right].time_s - from_s <= HOLE_S).then_some(Place { left, first, weights })
+    }
+
+    /// An attitude between the nodes, with its rate.
+    fn attitude<A: Frame, B: Frame>(&self, place: &Place, of: impl Fn(&Node) -> Rot<A, B>) -> (Rot<A, B>, Vec3<B>) {
+        let origin = of(&self.nodes[place.left]);
         let (mut turn, mut rate) = (Vec3::<B>::ZERO, Vec3::<B>::ZERO);
-        for i in (0..POINTS).filter(|&i| first + i != right - 1) {
-            let (weight, slope) = lagrange(i, t, at);
-            let phi = (origin.inverse() * of(&nodes[first + i])).log();
+        for (i, (weight, slope)) in place.weights.into_iter().enumerate().filter(|(i, _)| place.first + i != place.left)
+        {
+            let phi = (origin.inverse() * of(&self.nodes[place.first + i])).log();
             turn += phi * weight;
             rate += phi * slope;
         }
-        Some((origin * Rot::<B, B>::exp(turn), rate))
+        (origin * Rot::<B, B>::exp(turn), rate)
+    }
+
+    /// A velocity between the nodes.
+    fn velocity<A: Frame>(&self, place: &Place, of: impl Fn(&Node) -> Vec3<A>) -> Vec3<A> {
+        let origin = of(&self.nodes[place.left]);
+        let weights = place.weights.into_iter().enumerate();
+        weights.fold(origin, |sum, (i, (weight, _))| sum + (of(&self.nodes[place.first + i]) - origin) * weight)
     }
 }
 
@@ -180,7 +231,7 @@ mod tests {
             let mut attitudes = Attitudes::new(256);
             for k in 1..700 {
                 attitudes.push(&voyage.motion(k));
-                let Some(Together { a_m, a_s, w_m }) = attitudes.together(delay_s) else { continue };
+                let Some(Together { a_m, a_s, w_m, .. }) = attitudes.together(delay_s) else { continue };
                 let constant: Rot<MainStart, SubStart> = a_m * Rot::<Main, Sub>::identity() * a_s.inverse();
                 let first = *first.get_or_insert(constant);
                 assert!((constant * first.inverse()).angle() < 1e-4 * ARCSEC, "{delay_s} {k}");

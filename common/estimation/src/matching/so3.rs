@@ -22,6 +22,7 @@
 //! directions that nothing shows, and the filter invents information where there is no sway.
 
 pub use super::grade::{Grade, Gyro};
+use super::increment::Increment;
 use super::{Matching, Observation, Prediction, rows_of};
 use crate::flexure::Flexure;
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
@@ -53,8 +54,10 @@ pub mod place {
 pub type Covariance = SMatrix<f64, STATES, STATES>;
 /// Error state.
 pub type ErrorState = SVector<f64, STATES>;
-type Rows = SMatrix<f64, 3, STATES>;
-type ByScale = SMatrix<f64, 3, 6>;
+/// Rows of something with three components.
+pub type Rows = SMatrix<f64, 3, STATES>;
+/// How three components depend on the six of a symmetric matrix.
+pub type ByScale = SMatrix<f64, 3, 6>;
 
 /// Correlation time of the bias's variation in the run, s.
 const WANDER_S: f64 = 100.0;
@@ -105,23 +108,18 @@ pub struct So3 {
     a_m: Rot<MainStart, Main>,
     a_s: Rot<SubStart, Sub>,
     rate_m: Vector3<f64>,
-    dtheta_m: Vec3<Main>,
     since: Since,
 }
 
-/// The increments of one pair, as the model takes them in.
+/// How static part and flexure go on from now.
 #[derive(Clone, Copy, Debug)]
-pub struct Increment {
-    /// Accumulated attitude of the main unit.
-    pub a_m: Rot<MainStart, Main>,
-    /// Accumulated attitude of the sub unit.
-    pub a_s: Rot<SubStart, Sub>,
-    /// Angle increment of the main unit since the last pair taken in, rad.
-    pub dtheta_m: Vec3<Main>,
-    /// Its duration, s.
-    pub time_s: f64,
-    /// Standard deviation of further angle errors in it, rad.
-    pub disturbance: f64,
+pub struct Ahead {
+    /// By how much the deformation turns, rad.
+    pub turn: Vec3<Main>,
+    /// How the error of that depends on the error state.
+    pub rows: Rows,
+    /// Covariance of what the flexure's noise adds, rad^2.
+    pub noise: Matrix3<f64>,
 }
 
 impl So3 {
@@ -141,7 +139,6 @@ impl So3 {
             a_m: Rot::identity(),
             a_s: Rot::identity(),
             rate_m: Vector3::zeros(),
-            dtheta_m: Vec3::ZERO,
             since: Since::default(),
         }
     }
@@ -151,11 +148,16 @@ impl So3 {
         self.flexure = flexure;
     }
 
-    /// Starts an epoch: the constant is defined by the deformation as it is believed to be now. Gives the transition of the error state:
-    /// the new constant's error is that of static part and flexure, turned into the starting axes.
-    pub fn start_epoch(&mut self, a_m: Rot<MainStart, Main>, a_s: Rot<SubStart, Sub>) -> SMatrix<f64, STATES, STATES> {
+    /// Starts an epoch: the constant is defined by the deformation as it is believed to be now, which the attitudes show but for a `turn` of the
+    /// ship. Gives the transition of the error state: the new constant's error is that of static part and flexure, turned into the starting axes.
+    pub fn start_epoch(
+        &mut self,
+        a_m: Rot<MainStart, Main>,
+        a_s: Rot<SubStart, Sub>,
+        turn: Rot<Main, Main>,
+    ) -> SMatrix<f64, STATES, STATES> {
         (self.a_m, self.a_s) = (a_m, a_s);
-        self.constant = a_m * self.predicted() * a_s.inverse();
+        self.constant = a_m * turn.inverse() * self.predicted() * a_s.inverse();
         let mut transition = Covariance::identity();
         let minus_a = -a_m.matrix();
         transition.fixed_view_mut::<3, 3>(place::CONSTANT, place::CONSTANT).fill(0.0);
@@ -166,25 +168,54 @@ impl So3 {
 
     /// Takes in one pair: the constant drifts by the relative gyro errors as they are known.
     pub fn advance(&mut self, step: &Increment) {
-        let mid = step.a_m * Rot::<Main, Main>::exp(step.dtheta_m * -0.5);
+        let mid = step.middle_m();
         let dtheta = step.dtheta_m.column();
         let drift = (self.bias + self.wander) * step.time_s + Vec3::from_column(symmetric(&self.scale) * dtheta);
         self.constant = (Rot::<MainStart, MainStart>::exp(mid * drift) * self.constant).normalised();
         let rate = if step.time_s > 0.0 { dtheta / step.time_s } else { self.rate_m };
         let a = mid.matrix();
         let jitter = self.grade.main.stamp_jitter.powi(2) + self.grade.sub.stamp_jitter.powi(2);
-        let change = a * (rate - self.rate_m);
-        // a unit that gives mean rates leaves out this much of the attitude's change, and two units not the same part of it
-        let coning = self.dtheta_m.cross(step.dtheta_m).norm() / 12.0;
         let since = &mut self.since;
         since.by_bias += a * step.time_s;
         since.by_scale += a * by_scale(dtheta);
         since.walk += self.grade.arw_density() * step.time_s
             + step.disturbance.powi(2)
-            + coning * coning
             + self.grade.turning_variance() * rate.norm_squared() * step.time_s;
-        since.stamps += change * change.transpose() * jitter;
-        (self.a_m, self.a_s, self.rate_m, self.dtheta_m) = (step.a_m, step.a_s, rate, step.dtheta_m);
+        since.stamps += step.rate_changes * jitter;
+        (self.a_m, self.a_s, self.rate_m) = (step.a_m, step.a_s, rate);
+    }
+
+    /// Takes other attitudes for those of now.
+    pub fn retime(&mut self, a_m: Rot<MainStart, Main>, a_s: Rot<SubStart, Sub>) {
+        (self.a_m, self.a_s) = (a_m, a_s);
+    }
+
+    /// How errors of the gyros' bias and scale have turned the constant since the last propagation, in the starting axes.
+    pub fn by_gyro(&self) -> (Matrix3<f64>, ByScale) {
+        (self.since.by_bias, self.since.by_scale)
+    }
+
+    /// The flexure and its rate at the last propagation, rad, rad/s, in m.
+    pub fn flexed(&self) -> (Vector3<f64>, Vector3<f64>) {
+        (self.theta, self.theta_rate)
+    }
+
+    /// How static part and flexure go on for `time_s` from now, by their models.
+    pub fn ahead(&self, time_s: f64) -> Ahead {
+        let mut turn = self.static_rate.column() * time_s;
+        let (mut rows, mut noise) = (Rows::zeros(), Matrix3::zeros());
+        let from_s = self.since.time_s;
+        for axis in 0..3 {
+            let flexure = &self.flexure[axis];
+            let (near, far) = (flexure.transition(from_s), flexure.transition(from_s + time_s));
+            let by = [far[(0, 0)] - near[(0, 0)], far[(0, 1)] - near[(0, 1)]];
+            turn[axis] += by[0] * self.theta[axis] + by[1] * self.theta_rate[axis];
+            rows[(axis, place::STATIC_RATE + axis)] = -time_s;
+            rows[(axis, place::FLEXURE + axis)] = -by[0];
+            rows[(axis, place::FLEXURE_RATE + axis)] = -by[1];
+            noise[(axis, axis)] = flexure.noise(time_s)[(0, 0)];
+        }
+        Ahead { turn: Vec3::from_column(turn), rows, noise }
     }
 
     /// Lets time pass for the model of static part and flexure.

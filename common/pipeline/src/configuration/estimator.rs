@@ -32,6 +32,8 @@ pub enum MatchingMethod {
     /// Attitudes on SO(3).
     #[default]
     So3,
+    /// The same with accelerometers and an unknown delay, and the first minutes run over again with better parameters.
+    Deck,
     /// Angular rates, 12 states.
     Rate,
     /// Attitudes, what a registration has left over, 18 states.
@@ -110,7 +112,7 @@ impl MatchingMethod {
     /// The registrations that this matching can start from.
     pub fn registrations(self) -> &'static [RegistrationMethod] {
         match self {
-            Self::So3 => &[RegistrationMethod::Motion],
+            Self::So3 | Self::Deck => &[RegistrationMethod::Motion],
             Self::Rate | Self::AttitudeDcm | Self::Rodrigues | Self::RodriguesPrinted => {
                 &[RegistrationMethod::Motion, RegistrationMethod::Installation]
             }
@@ -135,7 +137,7 @@ impl MatchingMethod {
     /// The filters that have a meaning with this matching.
     pub fn filters(self) -> &'static [FilterMethod] {
         match self {
-            Self::So3 | Self::Rate | Self::AttitudeDcm => &[FilterMethod::Kalman],
+            Self::So3 | Self::Deck | Self::Rate | Self::AttitudeDcm => &[FilterMethod::Kalman],
             Self::Quaternion | Self::QuaternionDelay | Self::QuaternionWalk | Self::QuaternionNetwork => {
                 &[FilterMethod::Kalman, FilterMethod::Unscented]
             }
@@ -171,7 +173,7 @@ impl MatchingMethod {
 
     /// Whether it can be told of a delay.
     pub fn takes_delay(self) -> bool {
-        matches!(self, Self::QuaternionDelay | Self::QuaternionWalk | Self::QuaternionNetwork)
+        matches!(self, Self::Deck | Self::QuaternionDelay | Self::QuaternionWalk | Self::QuaternionNetwork)
     }
 
     /// Whether it has a network.

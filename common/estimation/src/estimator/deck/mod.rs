@@ -1,0 +1,323 @@
+//! The fast stage by the project's own model: registration by motion, then the filter of [`crate::matching::deck`], with an output at every pair.
+//!
+//! What both units felt in the first minutes is kept. Whenever better parameters come, a second filter runs over all of it beside the live one, some
+//! increments at each pair, and takes over where it has caught up. When it starts, how fast it runs and where it takes over follow from data time and
+//! the count of pairs alone, so that processes and a loop over a file give the same bits, and no state ever passes between processes.
+
+mod history;
+mod origin;
+mod running;
+
+use super::adoption::Adoption;
+use super::{Settings, attitude_of_deck, row_major};
+use crate::Estimator;
+use crate::align::{DelayRegistrar, Register, Registrar, Registration};
+use crate::evaluate::{Evaluate, Evidence};
+use crate::flexure::Flexure;
+use crate::matching::View;
+use crate::matching::deck::Options;
+use crate::matching::increment::Increments;
+use frames::{Main, Vec3, unit};
+use history::History;
+use messages::{Flags, FlexureParams, ImuPair, Solution};
+use nalgebra::Matrix3;
+use origin::Origin;
+use running::Running;
+
+/// While the filter runs, the registration by motion is worked out so often, ns.
+const REGISTER_AGAIN_NS: i64 = 10_000_000_000;
+/// A covariance beyond this (1 rad^2) says nothing of a rotation any more.
+const LOST: f64 = 1.0;
+/// No hull bends more than this (3 degrees, rad); what an identifier takes for more is a coarse unit's error.
+const LARGEST_FLEXURE: f64 = 0.05;
+/// So many increments of the history are run over at each pair.
+const AT_ONCE: usize = 5;
+/// The history is run over again when it has grown by this factor.
+const GROWN: f64 = 1.2;
+/// The delay is registered from so much data, s.
+const DELAY_DATA_S: f64 = 60.0;
+
+/// Settings of [`DeckEstimator`].
+#[derive(Clone, Copy, Debug)]
+pub struct DeckSettings {
+    /// What every estimator of an area is told.
+    pub area: Settings,
+    /// Accelerometers, lever arm, delay.
+    pub options: Options,
+    /// Whether the first minutes are run over again with better parameters.
+    pub replay: bool,
+}
+
+impl DeckSettings {
+    /// The least time from one update to the next.
+    fn period_s(&self) -> f64 {
+        1.0 / self.area.filter_hz - 0.5 * self.area.interval_s
+    }
+
+    /// A flexure model kept to what the units can tell and a hull can do.
+    fn bounded(&self, flexure: [Flexure; 3]) -> [Flexure; 3] {
+        let least = self.area.grade.least_flexure();
+        flexure.map(|axis| axis.bounded(least, LARGEST_FLEXURE))
+    }
+}
+
+/// The estimator of one area.
+pub struct DeckEstimator {
+    settings: DeckSettings,
+    evaluation: Box<dyn Evaluate>,
+    epoch: Option<u64>,
+    increments: Increments,
+    history: History,
+    /// Goes on collecting when the filter runs: what the motion alone says of the installation.
+    registrar: Registrar,
+    delays: Option<DelayRegistrar>,
+    since_ns: Option<i64>,
+    registered: Option<Registration>,
+    registered_ns: i64,
+    origin: Option<Origin>,
+    live: Option<Box<Running>>,
+    shadow: Option<Shadow>,
+    /// Length of the history from which on it is worth running over again, s.
+    again_s: f64,
+    adoption: Adoption,
+    /// The parameters with which the history was last run over.
+    replayed_id: u64,
+    /// Flags that the next solution carries.
+    news: Flags,
+}
+
+/// A filter that runs over the history.
+struct Shadow {
+    running: Box<Running>,
+    done: usize,
+}
+
+impl DeckEstimator {
+    /// An estimator that has seen nothing yet.
+    pub fn new(settings: DeckSettings, evaluation: Box<dyn Evaluate>) -> Self {
+        let has_delay = settings.options.delay.sigma > 0.0;
+        Self {
+            settings,
+            evaluation,
+            epoch: None,
+            increments: Increments::default(),
+            history: History::new(settings.period_s()),
+            registrar: Registrar::new(settings.area.grade.scale_variance()),
+            delays: has_delay.then(DelayRegistrar::new),
+            since_ns: None,
+            registered: None,
+            registered_ns: i64::MIN,
+            origin: None,
+            live: None,
+            shadow: None,
+            again_s: 0.0,
+            adoption: Adoption::new(),
+            replayed_id: 0,
+            news: Flags::empty(),
+        }
+    }
+
+    /// Starts anew, with nothing but the parameters in force.
+    fn reset(&mut self) {
+        self.registrar = Registrar::new(self.settings.area.grade.scale_variance());
+        self.delays = self.delays.take().map(|_| DelayRegistrar::new());
+        self.history.end();
+        (self.since_ns, self.origin, self.live, self.shadow) = (None, None, None, None);
+        self.epoch = None;
+        self.news |= Flags::RESET;
+    }
+
+    /// The flexure model in force, or the one that a start by motion guesses.
+    fn flexure(&self, origin: &Origin) -> [Flexure; 3] {
+        let adopted = self.adoption.flexure().map(|flexure| self.settings.bounded(flexure));
+        adopted.or(self.settings.area.flexure).unwrap_or(origin.guess())
+    }
+
+    /// The attitudes start anew with a pair.
+    fn enter_epoch(&mut self, pair: &ImuPair) {
+        self.epoch = Some(pair.epoch);
+        self.increments.restart();
+        self.shadow = None;
+        if let Some(live) = &mut self.live {
+            live.leave_epoch();
+            self.history.end();
+        } else {
+            self.history.restart(pair.header.time_ns);
+            if self.origin.is_some() {
+                self.run_again();
+            }
+        }
+    }
+
+    /// Collects motion until it shows the installation; then a filter starts.
+    fn register(&mut self, pair: &ImuPair) {
+        let time_ns = pair.header.time_ns;
+        self.registrar.add(pair);
+        let since_ns = *self.since_ns.get_or_insert(time_ns);
+        let waited_s = unit::seconds(time_ns - since_ns);
+        if let Some(delays) = self.delays.as_mut().filter(|_| waited_s < DELAY_DATA_S) {
+            delays.add(pair);
+        }
+        if self.origin.is_some() {
+            if time_ns - self.registered_ns >= REGISTER_AGAIN_NS {
+                self.registered = self.registrar.solve().filter(Registration::is_observable).or(self.registered);
+                self.registered_ns = time_ns;
+            }
+            return;
+        }
+        if pair.flags.contains(Flags::GAP) {
+            return;
+        }
+        match Origin::find(&self.settings, &self.registrar, self.delays.as_ref(), waited_s) {
+            origin::Found::Nothing => {}
+            origin::Found::Unobservable => self.news |= Flags::UNOBSERVABLE,
+            origin::Found::Start(origin) => {
+                (self.registered, self.registered_ns) = (origin.by_motion, time_ns);
+                self.origin = Some(*origin);
+                if !self.settings.replay {
+                    self.history.restart(time_ns);
+                }
+                self.run_again();
+            }
+        }
+    }
+
+    /// A filter starts at the beginning of the history, with the parameters in force.
+    fn run_again(&mut self) {
+        let Some(origin) = &self.origin else { return };
+        let flexure = self.flexure(origin);
+        let running = Running::new(origin.begin(&self.settings, flexure), self.history.begin_ns());
+        if self.settings.replay {
+            self.shadow = Some(Shadow { running: Box::new(running), done: 0 });
+        } else {
+            self.history.end();
+            self.live = Some(Box::new(running));
+        }
+        self.replayed_id = self.adoption.id();
+        self.again_s = self.history.length_s() * GROWN;
+    }
+
+    /// Lets the second filter catch up; where it has, it takes over. `at_end` says that the live filter stands at the end of the history.
+    fn catch_up(&mut self, at_end: bool) {
+        let news = self.adoption.id() != self.replayed_id && self.history.length_s() >= self.again_s;
+        if news && self.live.is_some() && self.shadow.is_none() && self.history.is_complete() {
+            self.run_again();
+        }
+        let Some(shadow) = &mut self.shadow else { return };
+        if !self.history.is_complete() && self.live.is_some() {
+            self.shadow = None;
+            return;
+        }
+        let steps = self.history.steps();
+        for step in steps.iter().skip(shadow.done).take(AT_ONCE) {
+            shadow.done += 1;
+            if shadow.running.step(step.time_ns, Some(step), &self.settings).is_none() {
+                self.shadow = None;
+                if self.live.is_none() {
+                    self.reset();
+                }
+                return;
+            }
+        }
+        if at_end && shadow.done == steps.len() && !steps.is_empty() {
+            self.live = self.shadow.take().map(|shadow| shadow.running);
+        }
+    }
+
+    fn publish(&mut self, pair: &ImuPair, flags: Flags) -> Solution {
+        let mut solution = Solution {
+            header: pair.header,
+            params_id: self.adoption.id(),
+            epoch: pair.epoch,
+            area: self.settings.area.area,
+            flags,
+            ..Solution::default()
+        };
+        let Some(running) = &self.live else { return solution };
+        let p = &running.p;
+        let coasting = running.is_coasting();
+        let View { deformation, rows, noise, static_part, static_rows, rate, rate_rows, drift, delay, skew } =
+            running.deck.view(coasting);
+        let triad = Matrix3::identity() * self.settings.area.grade.triad_variance();
+        let covariance = rows * p * rows.transpose() + noise + triad;
+        let static_covariance = static_rows * p * static_rows.transpose() + triad;
+        let dynamic_rows = rows - static_rows;
+        let so3 = running.deck.so3();
+
+        solution.q = deformation.quaternion();
+        solution.static_q = static_part.quaternion();
+        solution.constant = so3.constant().quaternion();
+        solution.phi = deformation.log().array();
+        solution.dynamic = (deformation * static_part.inverse()).log().array();
+        solution.rate = rate.array();
+        solution.drift = drift.array();
+        solution.scale = so3.scale();
+        solution.covariance = row_major(&covariance);
+        solution.static_covariance = row_major(&static_covariance);
+        solution.dynamic_covariance = row_major(&(dynamic_rows * p * dynamic_rows.transpose() + noise));
+        let estimate = |state: Option<(f64, usize)>| state.map_or((0.0, 0.0), |(x, i)| (x, p[(i, i)].sqrt()));
+        (solution.delay, solution.delay_sigma) = estimate(delay);
+        (solution.skew, solution.skew_sigma) = estimate(skew);
+        if let Some(registered) = &self.registered {
+            solution.registered = registered.rotation.quaternion();
+            solution.registered_sigma = registered.covariance.diagonal().map(f64::sqrt).into();
+        }
+        let interval_s = unit::seconds(pair.interval_ns).max(f64::MIN_POSITIVE);
+        solution.range = self.evaluation.range(&Evidence {
+            time_s: running.elapsed_s(),
+            interval_s,
+            w_im_m: Vec3::<Main>::from(pair.dtheta_m) / interval_s,
+            covariance,
+            static_covariance,
+            rate,
+            rate_covariance: rate_rows * p * rate_rows.transpose(),
+            rate_with_static: rate_rows * p * static_rows.transpose(),
+        });
+        solution.valid = u32::from(!coasting && covariance.diagonal().max() < LOST);
+        attitude_of_deck(&mut solution, pair, deformation, &covariance);
+        solution
+    }
+}
+
+impl Estimator for DeckEstimator {
+    fn offer(&mut self, params: FlexureParams) {
+        if self.adoption.offer(params) {
+            self.news |= Flags::LATE;
+        }
+    }
+
+    fn step(&mut self, pair: &ImuPair) -> Solution {
+        self.adoption.advance(pair.header.time_ns);
+        let is_gap = pair.flags.contains(Flags::GAP);
+        if !is_gap && self.epoch != Some(pair.epoch) {
+            self.enter_epoch(pair);
+        }
+        let felt = if is_gap { None } else { self.increments.next(pair) };
+        let at_end = felt.is_some_and(|step| self.history.take(&step));
+        if let (Some(flexure), Some(live)) = (self.adoption.flexure(), &mut self.live) {
+            live.set_flexure(self.settings.bounded(flexure));
+        }
+        let lost = self
+            .live
+            .as_mut()
+            .is_some_and(|live| live.step(pair.header.time_ns, felt.as_ref(), &self.settings).is_none());
+        if lost {
+            self.reset();
+        }
+        self.register(pair);
+        self.catch_up(at_end);
+
+        let mut flags = pair.flags;
+        if self.adoption.id() == 0 && self.settings.area.flexure.is_none() {
+            flags |= Flags::PRIOR;
+        }
+        flags |= std::mem::take(&mut self.news);
+        flags |= self.origin.as_ref().map_or(Flags::empty(), |origin| origin.flags);
+        flags |= match &self.live {
+            None => Flags::REGISTERING,
+            Some(live) if live.is_coasting() => Flags::COASTING,
+            Some(_) => Flags::empty(),
+        };
+        self.publish(pair, flags)
+    }
+}

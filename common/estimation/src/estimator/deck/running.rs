@@ -1,0 +1,108 @@
+//! The filter at work: the model of [`crate::matching::deck`] with its covariance.
+
+use super::DeckSettings;
+use crate::filter::{sequential, symmetrise};
+use crate::flexure::Flexure;
+use crate::matching::Matching;
+use crate::matching::deck::{Covariance, Deck, STATES};
+use crate::matching::increment::Increment;
+use frames::unit;
+use nalgebra::SMatrix;
+
+/// Beyond this standard deviation (rad) the constant is not worth keeping.
+const BROKEN: f64 = 0.1;
+
+/// Model and covariance.
+#[derive(Clone, Debug)]
+pub struct Running {
+    /// The nominal state.
+    pub deck: Deck,
+    /// Covariance of its error.
+    pub p: Covariance,
+    begin_ns: i64,
+    last_ns: i64,
+    begun: bool,
+    coasting: bool,
+}
+
+impl Running {
+    /// Starts at an instant.
+    pub fn new((deck, p): (Deck, Covariance), begin_ns: i64) -> Self {
+        Self { deck, p, begin_ns, last_ns: begin_ns, begun: false, coasting: true }
+    }
+
+    /// Whether the attitudes of both units are missing now.
+    pub fn is_coasting(&self) -> bool {
+        self.coasting
+    }
+
+    /// Time since the start, s.
+    pub fn elapsed_s(&self) -> f64 {
+        unit::seconds(self.last_ns - self.begin_ns)
+    }
+
+    /// Replaces the flexure model from now on.
+    pub fn set_flexure(&mut self, flexure: [Flexure; 3]) {
+        self.deck.set_flexure(flexure);
+    }
+
+    /// The attitudes to come have other starting axes.
+    pub fn leave_epoch(&mut self) {
+        self.deck.restart();
+        self.begun = false;
+    }
+
+    /// Lets the time come, with what both units felt up to then if that is known; `None` when the numbers have become useless.
+    pub fn step(&mut self, time_ns: i64, felt: Option<&Increment>, settings: &DeckSettings) -> Option<()> {
+        self.deck.coast(unit::seconds(time_ns - self.last_ns).max(0.0));
+        self.last_ns = time_ns;
+        let due = self.deck.pending_s() >= settings.period_s();
+        let elapsed_s = self.elapsed_s();
+        self.coasting = !felt.is_some_and(|step| self.deck.advance(elapsed_s, step));
+        if self.coasting {
+            if due {
+                self.predict();
+            }
+            return self.is_sound();
+        }
+        if !self.begun {
+            self.predict();
+            self.start_epoch();
+        } else if due {
+            self.predict();
+            if self.chain_is_broken() {
+                self.start_epoch();
+            }
+            let seen = self.deck.observe();
+            let error = sequential::update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
+            self.deck.inject(&error);
+        }
+        self.is_sound()
+    }
+
+    /// Forgets the constant: it is defined anew by what static part and flexure are believed to be.
+    fn start_epoch(&mut self) {
+        if let Some(transition) = self.deck.start_epoch() {
+            self.p = transition * self.p * transition.transpose();
+            symmetrise(&mut self.p);
+            self.begun = true;
+        }
+    }
+
+    /// Whether the constant is known so badly that a linear update would do harm, and worse than what it could be defined by.
+    fn chain_is_broken(&self) -> bool {
+        let trace = |rows: SMatrix<f64, 3, STATES>| (rows * self.p * rows.transpose()).trace();
+        let chain = trace(self.deck.deformation_rows());
+        chain > BROKEN * BROKEN && chain > 4.0 * trace(self.deck.view(true).rows)
+    }
+
+    fn predict(&mut self) {
+        let prediction = self.deck.propagate();
+        self.p = sequential::carried(&prediction.transition, &self.p) + prediction.noise;
+    }
+
+    fn is_sound(&self) -> Option<()> {
+        let sound = self.p.diagonal().iter().all(|v| v.is_finite() && *v >= 0.0);
+        (sound && self.deck.deformation().log().is_finite()).then_some(())
+    }
+}
