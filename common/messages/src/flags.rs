@@ -35,6 +35,10 @@ bitflags::bitflags! {
         const COASTING = 1 << 14;
         /// The filter met numbers that it could not use and started anew.
         const RESET = 1 << 15;
+        /// A value far off for one sample only was replaced by what its neighbours say, or found too late for that.
+        const SPIKE = 1 << 16;
+        /// An accelerometer's value has not changed by a bit for too long: the velocity increments are of no use, the angles are.
+        const ACCEL_STUCK = 1 << 17;
     }
 }
 
