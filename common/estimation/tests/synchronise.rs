@@ -13,6 +13,8 @@ fn settings() -> Settings {
         area: 0,
         interval_ns: T,
         silence_ns: 500_000_000,
+        spike_threshold: 5.0,
+        lever_arm_m: 0.0,
         main: Unit { mounting: Rot::identity(), range: Some(30.0) },
         sub: Unit { mounting: Rot::identity(), range: Some(30.0) },
     }

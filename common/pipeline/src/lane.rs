@@ -35,11 +35,13 @@ const LEVER_ARM_SIGMA: f64 = 0.02;
 
 /// The synchroniser of an area.
 pub fn synchroniser(configuration: &Configuration, area: usize) -> Synchroniser {
-    let Area { gyro, mounting, .. } = configuration.areas[area];
+    let Area { gyro, mounting, lever_arm, .. } = configuration.areas[area];
     Synchroniser::new(synchronise::Settings {
         area: area as u32,
         interval_ns: configuration.interval_ns(),
         silence_ns: nanoseconds(configuration.silence_s),
+        spike_threshold: configuration.spike_threshold,
+        lever_arm_m: lever_arm.norm(),
         main: Unit { mounting: configuration.main.mounting, range: configuration.main.gyro.range },
         sub: Unit { mounting, range: gyro.range },
     })

@@ -1,7 +1,7 @@
 //! Time synchronisation of one area: the sub unit's stream onto the main unit's instants, by data time alone.
 //!
-//! Each unit's stream is first cleaned (`stream`): repeated samples are dropped, a few late ones put back into their place, short
-//! holes bridged, and the increments composed into an attitude. The sub unit's ATTITUDE is then interpolated at the main
+//! Each unit's stream is first cleaned (`stream`): repeated samples are dropped, a few late ones put back into their place, spikes
+//! replaced (`spike`), short holes bridged, and the increments composed into an attitude. The sub unit's ATTITUDE is then interpolated at the main
 //! unit's instants (`interpolation`), which preserves the increments whatever the stamps do. The result depends on the contents of the
 //! two streams only, not on when they arrive; the one exception, silence, is decided by main data time and travels with the pair.
 //!
@@ -9,11 +9,14 @@
 
 mod channel;
 mod interpolation;
+mod roughness;
+mod spike;
 mod stream;
 
 use frames::{Case, Frame, Main, MainStart, Rot, Sub, SubStart, Vec3};
 use interpolation::{Found, Point};
 use messages::{Flags, ImuPair, ImuSample, MainAttitude};
+use spike::Told;
 use std::collections::VecDeque;
 use stream::{Node, Stream};
 
@@ -35,6 +38,10 @@ pub struct Settings {
     pub interval_ns: i64,
     /// The sub unit is declared silent after so much main data, ns.
     pub silence_ns: i64,
+    /// Spikes are what is further off its neighbours than so many times the scale of a unit's own roughness; 0 for no test.
+    pub spike_threshold: f64,
+    /// Distance of the units, m: a step of a turn acts on accelerometers as far from its axis.
+    pub lever_arm_m: f64,
     /// The main unit.
     pub main: Unit<Main>,
     /// The sub unit.
@@ -57,7 +64,7 @@ pub struct Counts {
     pub missing: u64,
     /// Samples refused: not finite, repeated, too late, or stamped before their predecessor.
     pub refused: u64,
-    /// Samples at the end of the range or with a stuck channel.
+    /// Samples at the end of the range, with a stuck channel or with a spike.
     pub suspect: u64,
 }
 
@@ -89,11 +96,16 @@ struct Last {
 impl Synchroniser {
     /// A synchroniser at the start of its streams.
     pub fn new(settings: Settings) -> Self {
-        let bridge_ns = BRIDGE * settings.interval_ns;
+        let told = Told {
+            threshold: settings.spike_threshold,
+            lever_arm: settings.lever_arm_m,
+            interval_ns: settings.interval_ns,
+            bridge_ns: BRIDGE * settings.interval_ns,
+        };
         Self {
             settings,
-            main: Stream::new(settings.main, settings.interval_ns, bridge_ns, true),
-            sub: Stream::new(settings.sub, settings.interval_ns, bridge_ns, false),
+            main: Stream::new(settings.main, told, true),
+            sub: Stream::new(settings.sub, told, false),
             ins: VecDeque::with_capacity(64),
             last: None,
             previous_ns: None,

@@ -1,6 +1,7 @@
 //! One unit's stream: in order, without repeats, short holes bridged, increments composed into an attitude.
 
 use super::channel::Channels;
+use super::spike::{Judged, SpikeTest, Told};
 use super::{Counts, Unit};
 use frames::{Frame, Rot, Vec3, unit};
 use messages::{Flags, Header, ImuSample};
@@ -44,6 +45,7 @@ pub(super) struct Stream<S: Frame, B: Frame> {
     bridge_ns: i64,
     /// Whether a sample that cannot be used still takes its place.
     keeps_void: bool,
+    spikes: SpikeTest,
     channels: Channels,
     expected: Option<u64>,
     held: Vec<ImuSample>,
@@ -56,12 +58,13 @@ pub(super) struct Stream<S: Frame, B: Frame> {
 }
 
 impl<S: Frame, B: Frame> Stream<S, B> {
-    pub fn new(unit: Unit<B>, interval_ns: i64, bridge_ns: i64, keeps_void: bool) -> Self {
+    pub fn new(unit: Unit<B>, told: Told, keeps_void: bool) -> Self {
         Self {
             unit,
-            interval_ns,
-            bridge_ns,
+            interval_ns: told.interval_ns,
+            bridge_ns: told.bridge_ns,
             keeps_void,
+            spikes: SpikeTest::new(told),
             channels: Channels::new(unit.range),
             expected: None,
             held: Vec::with_capacity(REORDER + 1),
@@ -80,22 +83,24 @@ impl<S: Frame, B: Frame> Stream<S, B> {
             Some(expected) if number.saturating_add(RECOUNT) < expected => {
                 self.flush();
                 self.segment += 1;
-                self.accept(sample);
+                self.test(sample);
             }
             Some(expected) if number < expected => self.counts.refused += 1,
             Some(expected) if number > expected => self.hold(sample),
             _ => {
-                self.accept(sample);
+                self.test(sample);
                 self.release();
             }
         }
     }
 
-    /// Gives up waiting for samples that are missing.
+    /// Gives up waiting for samples that are missing or might tell of a spike.
     pub fn flush(&mut self) {
         while !self.held.is_empty() {
             self.skip_to_held();
         }
+        self.spikes.release();
+        self.hand_on();
     }
 
     fn hold(&mut self, sample: &ImuSample) {
@@ -111,22 +116,34 @@ impl<S: Frame, B: Frame> Stream<S, B> {
     fn skip_to_held(&mut self) {
         let first = self.held.remove(0);
         self.counts.missing += self.expected.map_or(0, |expected| first.header.sequence - expected);
-        self.accept(&first);
+        self.test(&first);
         self.release();
     }
 
     fn release(&mut self) {
         while self.held.first().is_some_and(|held| Some(held.header.sequence) == self.expected) {
             let next = self.held.remove(0);
-            self.accept(&next);
+            self.test(&next);
         }
     }
 
     /// The next sample in order.
-    fn accept(&mut self, sample: &ImuSample) {
+    fn test(&mut self, sample: &ImuSample) {
         self.expected = Some(sample.header.sequence + 1);
+        self.spikes.push(sample);
+        self.hand_on();
+    }
+
+    fn hand_on(&mut self) {
+        while let Some(judged) = self.spikes.pop() {
+            self.accept(&judged);
+        }
+    }
+
+    fn accept(&mut self, judged: &Judged) {
+        let sample = &judged.sample;
         let interval_ns = if sample.interval_ns > 0 { sample.interval_ns } else { self.interval_ns };
-        let found = self.channels.inspect(sample, unit::seconds(interval_ns)) | sample.flags;
+        let found = self.channels.inspect(sample, unit::seconds(interval_ns)) | sample.flags | judged.flags;
         let back_ns = self.last.map_or(0, |last| last.header.time_ns - sample.header.time_ns);
         if self.last.is_some() && (0..CLOCK_SET_NS).contains(&back_ns) {
             self.counts.refused += 1;
@@ -149,8 +166,9 @@ impl<S: Frame, B: Frame> Stream<S, B> {
             }
             return;
         }
-        self.counts.suspect += u64::from(found.contains(Flags::SATURATED));
-        let node = self.compose(sample, interval_ns, found);
+        self.counts.suspect += u64::from(found.intersects(Flags::SATURATED | Flags::SPIKE | Flags::ACCEL_STUCK));
+        let mut node = self.compose(sample, interval_ns, found);
+        node.disturbance = node.disturbance.hypot(judged.disturbance);
         self.refusals = Flags::empty();
         self.last = Some(node);
         self.nodes.push_back(node);

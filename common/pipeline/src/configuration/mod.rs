@@ -13,6 +13,7 @@ mod quantity;
 mod rules;
 mod scenario;
 mod simulation;
+mod spikes;
 mod swing;
 mod table;
 mod unit_errors;
@@ -43,6 +44,9 @@ pub struct Configuration {
     /// A unit that gives nothing for so long is silent, s.
     #[serde(default = "half", deserialize_with = "quantity::silence_s")]
     pub silence_s: f64,
+    /// A value is a spike if it is off its neighbours by more than so many times the unit's own roughness; 0 for no test.
+    #[serde(default = "spikes::usual", deserialize_with = "spikes::threshold")]
+    pub spike_threshold: f64,
     /// The error figures of a summary leave out the first so many seconds.
     #[serde(default = "two_minutes", deserialize_with = "quantity::settle_s")]
     pub settle_s: f64,

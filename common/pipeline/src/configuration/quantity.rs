@@ -118,6 +118,7 @@ macro_rules! quantities {
 quantities! {
     rate_hz: 1.0, 10.0, 1000.0;
     silence_s: 1.0, 0.01, 3600.0;
+    spike_threshold: 1.0, 0.0, 1e3;
     settle_s: 1.0, 0.0, 1e6;
     duration_s: 1.0, 0.1, 1e8;
     window_s: 1.0, 1.0, 86_400.0;
