@@ -8,7 +8,7 @@ use estimation::align::least_squares::LeastSquares;
 use estimation::align::quaternion::Angles;
 use estimation::align::{self, DelayRegistrar, Registrar};
 use estimation::estimator::{self, DeckEstimator, DeckSettings, MakeRegister, Matched, MatchedSettings};
-use estimation::evaluate::{Coherence, Deviations, ErrorRange, Evaluate};
+use estimation::evaluate::{Coherence, Deviations, ErrorRange, Evaluate, Observed};
 use estimation::filter::Filter;
 use estimation::filter::correntropy::Kernel;
 use estimation::filter::predictive::Weight;
@@ -180,6 +180,7 @@ fn evaluation(configuration: &Configuration, area: usize) -> Box<dyn Evaluate> {
         RangeMethod::Naive => Box::new(Deviations(3.0)),
         RangeMethod::ErrorRange => Box::new(ErrorRange::new(told.range_factor)),
         RangeMethod::Coherence => Box::new(Coherence::new(told.range_factor)),
+        RangeMethod::Observed => Box::new(Observed::new()),
     }
 }
 

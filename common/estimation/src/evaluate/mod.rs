@@ -5,13 +5,16 @@
 //! | so many standard deviations | [`Deviations`] |
 //! | covariance of flexure rate and static part, with a coefficient (004) | [`ErrorRange`] |
 //! | assumed coherence of flexure and ship, unit-consistent | [`Coherence`] |
+//! | the coherence that the data show | [`Observed`] |
 
 mod coherence;
 mod error_range;
+mod observed;
 mod window;
 
 pub use coherence::Coherence;
 pub use error_range::ErrorRange;
+pub use observed::Observed;
 
 use frames::{Main, Vec3};
 use nalgebra::Matrix3;

@@ -106,6 +106,8 @@ pub enum RangeMethod {
     ErrorRange,
     /// By an assumed coherence of flexure and ship.
     Coherence,
+    /// By the coherence of flexure and ship that the data show.
+    Observed,
 }
 
 impl MatchingMethod {
@@ -167,7 +169,13 @@ impl MatchingMethod {
     pub fn ranges(self) -> &'static [RangeMethod] {
         match self {
             Self::So3 => &[RangeMethod::Normal],
-            _ => &[RangeMethod::Normal, RangeMethod::Naive, RangeMethod::ErrorRange, RangeMethod::Coherence],
+            _ => &[
+                RangeMethod::Normal,
+                RangeMethod::Naive,
+                RangeMethod::ErrorRange,
+                RangeMethod::Coherence,
+                RangeMethod::Observed,
+            ],
         }
     }
 
