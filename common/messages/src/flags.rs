@@ -39,6 +39,8 @@ bitflags::bitflags! {
         const SPIKE = 1 << 16;
         /// An accelerometer's value has not changed by a bit for too long: the velocity increments are of no use, the angles are.
         const ACCEL_STUCK = 1 << 17;
+        /// The data disagree with the filter by more than its covariance allows; the published covariance is widened by as much.
+        const INCONSISTENT = 1 << 18;
     }
 }
 

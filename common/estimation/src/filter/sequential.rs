@@ -22,6 +22,15 @@ pub fn carried<const N: usize>(transition: &SMatrix<f64, N, N>, p: &SMatrix<f64,
     carried
 }
 
+/// What an update found.
+#[derive(Clone, Copy, Debug)]
+pub struct Correction<const N: usize> {
+    /// Estimate of the error state.
+    pub error: SVector<f64, N>,
+    /// Mean of the squared innovations in terms of their variance, over the values that see any state; 1 is expected.
+    pub surprise: f64,
+}
+
 /// Given the covariance `p` of the error state, the residual `z`, its matrix `h` and noise `r`: the estimate of the error
 /// state, with `p` replaced by the covariance after the update. `None`, and `p` as it was, when the numbers do not allow it.
 pub fn update<const N: usize, const K: usize>(
@@ -29,7 +38,7 @@ pub fn update<const N: usize, const K: usize>(
     z: &SVector<f64, K>,
     h: &SMatrix<f64, K, N>,
     r: &SMatrix<f64, K, K>,
-) -> Option<SVector<f64, N>> {
+) -> Option<Correction<N>> {
     // values with noise of their own each
     let white = r.cholesky()?.l();
     let (mut z, mut h) = (*z, *h);
@@ -37,6 +46,7 @@ pub fn update<const N: usize, const K: usize>(
         return None;
     }
     let (mut error, mut after) = (SVector::<f64, N>::zeros(), *p);
+    let (mut squares, mut count) = (0.0, 0.0);
     for k in 0..K {
         let row = h.row(k);
         let mut cross = SVector::<f64, N>::zeros();
@@ -48,6 +58,10 @@ pub fn update<const N: usize, const K: usize>(
         if !(variance.is_finite() && variance >= 1.0 && surprise.is_finite()) {
             return None;
         }
+        if row.iter().any(|factor| *factor != 0.0) {
+            squares += surprise * surprise / variance;
+            count += 1.0;
+        }
         error.axpy(surprise / variance, &cross, 1.0);
         // both triangles get the same numbers
         after.syger(-1.0 / variance, &cross, &cross, 1.0);
@@ -57,7 +71,7 @@ pub fn update<const N: usize, const K: usize>(
         return None;
     }
     *p = after;
-    Some(error)
+    Some(Correction { error, surprise: if count > 0.0 { squares / count } else { 1.0 } })
 }
 
 /// The lower triangle written over the upper one.
@@ -86,7 +100,10 @@ mod tests {
         let r = Matrix3::new(0.5, 0.1, 0.0, 0.1, 0.3, 0.05, 0.0, 0.05, 0.2);
         let z = Vector3::new(0.3, -0.7, 1.1);
         let (mut p, mut other) = (covariance(), covariance());
-        let error = update(&mut p, &z, &h, &r).expect("regular");
+        let Correction { error, surprise } = update(&mut p, &z, &h, &r).expect("regular");
+        let innovation = h * covariance() * h.transpose() + r;
+        let square = (z.transpose() * innovation.try_inverse().expect("regular") * z)[0];
+        assert!((3.0 * surprise - square).abs() < 1e-12);
         let expected: Vector4<f64> = kalman::update(&mut other, &z, &h, &r).expect("regular");
         assert!((error - expected).norm() < 1e-12 && (p - other).norm() < 1e-12);
         assert_eq!(p, p.transpose());

@@ -4,7 +4,7 @@
 //! with other parameters.
 
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
-use messages::ImuPair;
+use messages::{Flags, ImuPair};
 use nalgebra::Matrix3;
 
 /// What both units felt over a time.
@@ -24,7 +24,7 @@ pub struct Increment {
     pub disturbance: f64,
     /// Sum of the outer products of the changes of the main unit's mean rate from sample to sample, rad^2/s^2.
     pub rate_changes: Matrix3<f64>,
-    /// Velocity increments; `None` if some were lost on the way.
+    /// Velocity increments; `None` if some were lost on the way or cannot be true.
     pub velocities: Option<Velocities>,
 }
 
@@ -101,7 +101,8 @@ impl Increments {
         };
         // a unit that gives mean rates leaves out this much of the attitude's change, and two units not the same part of it
         let coning = last.dtheta_m.cross(dtheta_m).norm() / 12.0;
-        let lost = 2 * (time_ns - last.time_ns - pair.interval_ns).abs() > pair.interval_ns;
+        let lost = 2 * (time_ns - last.time_ns - pair.interval_ns).abs() > pair.interval_ns
+            || pair.flags.intersects(Flags::ACCEL_STUCK | Flags::SATURATED);
         let dtheta_s = Vec3::<Sub>::from(pair.dtheta_s);
         let velocities = (!lost).then(|| Velocities {
             m: middle_m * Vec3::from(pair.dvel_m),

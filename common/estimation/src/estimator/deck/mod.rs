@@ -7,6 +7,7 @@
 mod history;
 mod origin;
 mod running;
+mod surprise;
 
 use super::adoption::Adoption;
 use super::{Settings, attitude_of_deck, row_major};
@@ -54,6 +55,11 @@ impl DeckSettings {
         1.0 / self.area.filter_hz - 0.5 * self.area.interval_s
     }
 
+    /// Whether the sub unit's stamps may be late.
+    fn has_delay(&self) -> bool {
+        self.options.delay.sigma > 0.0
+    }
+
     /// A flexure model kept to what the units can tell and a hull can do.
     fn bounded(&self, flexure: [Flexure; 3]) -> [Flexure; 3] {
         let least = self.area.grade.least_flexure();
@@ -95,7 +101,6 @@ struct Shadow {
 impl DeckEstimator {
     /// An estimator that has seen nothing yet.
     pub fn new(settings: DeckSettings, evaluation: Box<dyn Evaluate>) -> Self {
-        let has_delay = settings.options.delay.sigma > 0.0;
         Self {
             settings,
             evaluation,
@@ -103,7 +108,7 @@ impl DeckEstimator {
             increments: Increments::default(),
             history: History::new(settings.period_s()),
             registrar: Registrar::new(settings.area.grade.scale_variance()),
-            delays: has_delay.then(DelayRegistrar::new),
+            delays: settings.has_delay().then(DelayRegistrar::new),
             since_ns: None,
             registered: None,
             registered_ns: i64::MIN,
@@ -120,7 +125,7 @@ impl DeckEstimator {
     /// Starts anew, with nothing but the parameters in force.
     fn reset(&mut self) {
         self.registrar = Registrar::new(self.settings.area.grade.scale_variance());
-        self.delays = self.delays.take().map(|_| DelayRegistrar::new());
+        self.delays = self.settings.has_delay().then(DelayRegistrar::new);
         self.history.end();
         (self.since_ns, self.origin, self.live, self.shadow) = (None, None, None, None);
         self.epoch = None;
@@ -174,6 +179,7 @@ impl DeckEstimator {
             origin::Found::Start(origin) => {
                 (self.registered, self.registered_ns) = (origin.by_motion, time_ns);
                 self.origin = Some(*origin);
+                self.delays = None;
                 if !self.settings.replay {
                     self.history.restart(time_ns);
                 }
@@ -186,7 +192,8 @@ impl DeckEstimator {
     fn run_again(&mut self) {
         let Some(origin) = &self.origin else { return };
         let flexure = self.flexure(origin);
-        let running = Running::new(origin.begin(&self.settings, flexure), self.history.begin_ns());
+        let running =
+            Running::new(origin.begin(&self.settings, flexure), self.history.begin_ns(), self.settings.period_s());
         if self.settings.replay {
             self.shadow = Some(Shadow { running: Box::new(running), done: 0 });
         } else {
@@ -220,7 +227,10 @@ impl DeckEstimator {
             }
         }
         if at_end && shadow.done == steps.len() && !steps.is_empty() {
-            self.live = self.shadow.take().map(|shadow| shadow.running);
+            // one that its data disagree with is no better than the live one
+            let better = shadow.running.surprise().is_small() || self.live.is_none();
+            let running = self.shadow.take().map(|shadow| shadow.running);
+            self.live = if better { running } else { self.live.take() };
         }
     }
 
@@ -238,9 +248,10 @@ impl DeckEstimator {
         let coasting = running.is_coasting();
         let View { deformation, rows, noise, static_part, static_rows, rate, rate_rows, drift, delay, skew } =
             running.deck.view(coasting);
+        let excess = running.surprise().excess();
         let triad = Matrix3::identity() * self.settings.area.grade.triad_variance();
-        let covariance = rows * p * rows.transpose() + noise + triad;
-        let static_covariance = static_rows * p * static_rows.transpose() + triad;
+        let covariance = (rows * p * rows.transpose() + noise) * excess + triad;
+        let static_covariance = static_rows * p * static_rows.transpose() * excess + triad;
         let dynamic_rows = rows - static_rows;
         let so3 = running.deck.so3();
 
@@ -254,7 +265,7 @@ impl DeckEstimator {
         solution.scale = so3.scale();
         solution.covariance = row_major(&covariance);
         solution.static_covariance = row_major(&static_covariance);
-        solution.dynamic_covariance = row_major(&(dynamic_rows * p * dynamic_rows.transpose() + noise));
+        solution.dynamic_covariance = row_major(&((dynamic_rows * p * dynamic_rows.transpose() + noise) * excess));
         let estimate = |state: Option<(f64, usize)>| state.map_or((0.0, 0.0), |(x, i)| (x, p[(i, i)].sqrt()));
         (solution.delay, solution.delay_sigma) = estimate(delay);
         (solution.skew, solution.skew_sigma) = estimate(skew);
@@ -316,6 +327,7 @@ impl Estimator for DeckEstimator {
         flags |= match &self.live {
             None => Flags::REGISTERING,
             Some(live) if live.is_coasting() => Flags::COASTING,
+            Some(live) if !live.surprise().is_small() => Flags::INCONSISTENT,
             Some(_) => Flags::empty(),
         };
         self.publish(pair, flags)

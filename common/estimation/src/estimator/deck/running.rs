@@ -1,6 +1,7 @@
 //! The filter at work: the model of [`crate::matching::deck`] with its covariance.
 
 use super::DeckSettings;
+use super::surprise::Surprise;
 use crate::filter::{sequential, symmetrise};
 use crate::flexure::Flexure;
 use crate::matching::Matching;
@@ -23,12 +24,19 @@ pub struct Running {
     last_ns: i64,
     begun: bool,
     coasting: bool,
+    surprise: Surprise,
 }
 
 impl Running {
     /// Starts at an instant.
-    pub fn new((deck, p): (Deck, Covariance), begin_ns: i64) -> Self {
-        Self { deck, p, begin_ns, last_ns: begin_ns, begun: false, coasting: true }
+    pub fn new((deck, p): (Deck, Covariance), begin_ns: i64, period_s: f64) -> Self {
+        let surprise = Surprise::new(period_s);
+        Self { deck, p, begin_ns, last_ns: begin_ns, begun: false, coasting: true, surprise }
+    }
+
+    /// Whether its data agree with it.
+    pub fn surprise(&self) -> Surprise {
+        self.surprise
     }
 
     /// Whether the attitudes of both units are missing now.
@@ -74,8 +82,9 @@ impl Running {
                 self.start_epoch();
             }
             let seen = self.deck.observe();
-            let error = sequential::update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
-            self.deck.inject(&error);
+            let correction = sequential::update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
+            self.deck.inject(&correction.error);
+            self.surprise.take(correction.surprise);
         }
         self.is_sound()
     }
