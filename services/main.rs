@@ -49,7 +49,7 @@ enum Command {
     Check { configuration: PathBuf },
     /// Repeat the papers' experiments and print our figures beside theirs and beside the statistical bound
     Reproduce {
-        /// Name of a paper's experiment, or all; an unknown name is answered with the known ones
+        /// Name of a paper's experiment, deck for the project's own estimator, or all; an unknown name is answered with the known ones
         #[arg(default_value = "all")]
         experiment: reproduce::Selection,
         /// Trials of every study, instead of its own number

@@ -47,7 +47,7 @@ fn the_quick_run_has_rows_for_every_paper_and_method() {
     rows.iter().for_each(assert_row);
     let ids: BTreeSet<&str> = rows.iter().map(|row| row["id"].as_str().unwrap()).collect();
     assert_eq!(ids.len(), rows.len(), "an id stands twice");
-    for paper in ["idam", "q-nnkf", "model-free", "tufts-kumaresan", "error-range"] {
+    for paper in ["idam", "q-nnkf", "model-free", "tufts-kumaresan", "error-range", "deck"] {
         assert!(ids.iter().any(|id| id.starts_with(&format!("{paper}/"))), "{paper}");
     }
     let named = |word: &str| rows.iter().any(|row| row["row"].as_str().unwrap().contains(word));

@@ -1,6 +1,6 @@
-//! The experiments of the papers.
+//! The experiments of the papers, and that of the project's own estimator on all of their scenarios.
 //!
-//! An [`Experiment`] is a paper: some [`Study`]s, each a measurement that is repeated over trials and what is concluded from
+//! An [`Experiment`] is a paper, or the estimator: some [`Study`]s, each a measurement that is repeated over trials and what is concluded from
 //! all of them. A measurement simulates its scenario once ([`Data`]), lets several methods [`run`] over the same data, and takes
 //! figures from their [`Track`]s. The conclusion are [`Row`]s, our figure beside the paper's and the bound, with a [`Verdict`] that
 //! is computed, and [`Figure`]s to be drawn. Results depend on the [`Plan`] alone: neither on the number of threads nor on their pace.
@@ -9,6 +9,7 @@
 //! `config/papers` and a line in [`presets`].
 
 mod data;
+mod deck;
 mod error_range;
 mod fault;
 mod figure;
@@ -36,23 +37,24 @@ pub use verdict::{Published, Verdict};
 
 use rayon::prelude::*;
 
-/// The studies of one paper.
+/// The studies of one paper, or of the project's own estimator.
 pub struct Experiment {
     /// As the command line calls it.
     pub name: &'static str,
-    /// Number and subject of the paper.
+    /// Number and subject.
     pub title: &'static str,
     /// Its studies, in the order of the paper.
     pub studies: fn() -> Vec<Study>,
 }
 
-/// All papers, in the order of their output.
-pub const EXPERIMENTS: [Experiment; 5] = [
+/// All of them, in the order of their output.
+pub const EXPERIMENTS: [Experiment; 6] = [
     Experiment { name: "idam", title: idam::TITLE, studies: idam::studies },
     Experiment { name: "q-nnkf", title: q_nnkf::TITLE, studies: q_nnkf::studies },
     Experiment { name: "model-free", title: model_free::TITLE, studies: model_free::studies },
     Experiment { name: "tufts-kumaresan", title: tufts_kumaresan::TITLE, studies: tufts_kumaresan::studies },
     Experiment { name: "error-range", title: error_range::TITLE, studies: error_range::studies },
+    Experiment { name: "deck", title: deck::TITLE, studies: deck::studies },
 ];
 
 impl Experiment {

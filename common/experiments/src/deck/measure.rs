@@ -1,0 +1,85 @@
+//! One trial: the estimator, the same told the truth, and rivals, over the same data.
+
+use super::method::{self, run_blind, run_true};
+use super::paired::Paired;
+use super::scenario::Scenario;
+use crate::{Data, Fault, Point, Track, Trial};
+use std::ops::RangeInclusive;
+
+/// The spans of time in which errors count, s: after five minutes, and the minutes before.
+pub(super) const SPANS: [RangeInclusive<f64>; 2] = [300.0..=f64::INFINITY, 60.0..=300.0];
+/// An estimate is expected from here on, s.
+const FROM_S: f64 = 60.0;
+/// The end of the first minutes, s.
+const EARLY_S: f64 = 300.0;
+
+/// What is kept of a trial.
+#[derive(Clone, Debug)]
+pub(super) struct Measured {
+    pub seed: u64,
+    /// Over the same estimator told the truth, by span.
+    pub truth: [Option<Paired>; 2],
+    /// Over each rival, by span.
+    pub rivals: Vec<[Option<Paired>; 2]>,
+    /// The estimator's own figures, then those of the one told the truth.
+    pub honesty: [Honesty; 2],
+}
+
+/// What a method says of its own error, against that error.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Honesty {
+    /// `e^T P^-1 e` at the end.
+    pub nees: f64,
+    /// The largest error over its standard deviation in the first five minutes.
+    pub early: f64,
+    /// Share of the errors that the range holds.
+    pub coverage: [f64; 3],
+    /// Share of the instants at which there is an estimate.
+    pub valid: f64,
+    /// The largest change of the error from one pair to the next, over the range before it.
+    pub step: f64,
+}
+
+impl Honesty {
+    fn of(track: &Track) -> Self {
+        let over = track.over(FROM_S..);
+        let valid = |point: &&Point| point.valid;
+        let early = track.over(..=EARLY_S).points.iter().filter(valid).map(|point| worst(point.error, point.sigma()));
+        let steps = track.points.windows(2).filter(|pair| pair.iter().all(|point| point.valid)).map(|pair| {
+            let change = [0, 1, 2].map(|axis| pair[1].error[axis] - pair[0].error[axis]);
+            worst(change, pair[0].range)
+        });
+        Self {
+            nees: track.points.iter().rfind(valid).map_or(f64::NAN, Point::nees),
+            early: early.fold(f64::NAN, f64::max),
+            coverage: over.coverage(|point| point.range),
+            valid: over.valid_share(),
+            step: steps.fold(f64::NAN, f64::max),
+        }
+    }
+}
+
+/// The largest of three values in terms of others.
+fn worst(values: [f64; 3], of: [f64; 3]) -> f64 {
+    [0, 1, 2].map(|axis| values[axis].abs() / of[axis]).into_iter().fold(0.0, f64::max)
+}
+
+fn paired(ours: &Track, other: &Track) -> [Option<Paired>; 2] {
+    SPANS.map(|span| Paired::of(ours.over(span.clone()), other.over(span)))
+}
+
+/// `None` of a scenario that a quick run leaves out.
+pub(super) fn measure(scenario: &Scenario, trial: &Trial) -> Result<Option<Measured>, Fault> {
+    let Some(configuration) = scenario.configuration(trial)? else { return Ok(None) };
+    let data = Data::simulate(&configuration)?;
+    let default = method::default(&configuration)?;
+    let ours = run_blind(&default, &data);
+    let truth = run_true(&method::told(&default), &data);
+    let rivals = scenario.rivals.iter().map(|rival| Ok(paired(&ours, &run_blind(&rival.on(&configuration)?, &data))));
+    Ok(Some(Measured {
+        seed: trial.seed,
+        rivals: rivals.collect::<Result<_, Fault>>()?,
+        truth: paired(&ours, &truth),
+        honesty: [Honesty::of(&ours), Honesty::of(&truth)],
+    }))
+}

@@ -1,0 +1,143 @@
+//! The methods that are compared.
+
+use crate::{Data, Fault, Track, presets, run, run_told};
+use estimation::flexure::Flexure;
+use frames::unit::nanoseconds;
+use messages::{FlexureParams, Header};
+use pipeline::configuration::{Configuration, IdentifierMethod};
+use simulation::GaussMarkov;
+use std::path::Path;
+
+/// The one configuration of the estimator.
+const DEFAULT: &str = r#"
+[area.estimator]
+matching = "deck"
+
+[area.identifier]
+method = "whittle"
+window_s = 600
+period_s = 10
+minimum_s = 30
+"#;
+
+/// What a configuration needs besides; nothing of it is used.
+const FRAME: &str = r#"
+rate_hz = 100
+[main]
+source = { kind = "simulator" }
+gyro = { arw_deg_per_sqrt_h = 0.001, bias_deg_per_h = 0.003 }
+[[area]]
+name = "deck"
+source = { kind = "simulator" }
+gyro = { arw_deg_per_sqrt_h = 0.001, bias_deg_per_h = 0.01 }
+"#;
+
+/// Distance of the points of a track: every pair.
+const EVERY_S: f64 = 0.0;
+
+/// The estimator on a scenario, from nothing.
+pub(super) fn default(scenario: &Configuration) -> Result<Configuration, Fault> {
+    let told = Configuration::parse(Path::new("default"), &format!("{FRAME}{DEFAULT}"))?;
+    Ok(scenario.with(|c| {
+        let area = &mut c.areas[0];
+        (area.estimator, area.identifier) = (told.areas[0].estimator, told.areas[0].identifier);
+    }))
+}
+
+/// The same, told the flexure from the start on.
+pub(super) fn told(method: &Configuration) -> Configuration {
+    method.with(|c| {
+        let area = &mut c.areas[0];
+        area.identifier.method = IdentifierMethod::Fixed(area.simulation.flexure.map(flexure));
+    })
+}
+
+/// Runs a method that is told the flexure from the start on, and tells it how the flexure changes.
+pub(super) fn run_true(method: &Configuration, data: &Data) -> Track {
+    let begin_ns = data.pairs.first().map_or(0, |pair| pair.header.time_ns);
+    let set = |(change, id): (&simulation::FlexureChange, u64)| FlexureParams {
+        header: Header::default(),
+        id,
+        effective_from_ns: begin_ns + nanoseconds(change.at_s),
+        mu: change.flexure.map(|axis| axis.mu),
+        b: change.flexure.map(|axis| axis.b),
+        sigma: change.flexure.map(|axis| axis.sigma),
+        ..FlexureParams::default()
+    };
+    let sets: Vec<FlexureParams> = method.areas[0].simulation.flexure_changes.iter().zip(1..).map(set).collect();
+    run_told(method, data, EVERY_S, &sets)
+}
+
+/// Runs a method that is told nothing.
+pub(super) fn run_blind(method: &Configuration, data: &Data) -> Track {
+    run(method, data, EVERY_S)
+}
+
+fn flexure(axis: GaussMarkov) -> Flexure {
+    Flexure { mu: axis.mu, b: axis.b, sigma: axis.sigma }
+}
+
+/// A paper's method, or one of ours beside it, that is not told the true flexure.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rival {
+    /// In the identities of rows.
+    pub id: &'static str,
+    /// In tables.
+    pub name: &'static str,
+    /// Whose estimator, identifier and installation it has.
+    preset: &'static str,
+    /// Whose identifier it has instead, where the preset's is told the true flexure.
+    identifier: Option<&'static str>,
+}
+
+impl Rival {
+    const fn new(id: &'static str, name: &'static str, preset: &'static str) -> Self {
+        Self { id, name, preset, identifier: None }
+    }
+
+    const fn identified(self, by: &'static str) -> Self {
+        Self { identifier: Some(by), ..self }
+    }
+
+    /// The scenario with this method.
+    pub(super) fn on(&self, scenario: &Configuration) -> Result<Configuration, Fault> {
+        let preset = presets::configuration(self.preset, scenario.run.seed)?;
+        let identifier = presets::configuration(self.identifier.unwrap_or(self.preset), scenario.run.seed)?;
+        Ok(scenario.with(|c| {
+            let (area, told) = (&mut c.areas[0], &preset.areas[0]);
+            area.estimator = told.estimator;
+            area.installation = told.installation;
+            area.identifier = identifier.areas[0].identifier;
+        }))
+    }
+}
+
+/// Rivals on paper 000.
+pub(super) const IDAM: &[Rival] = &[
+    Rival::new("ekf-rvm", "EKF, RVM", "idam_ekf"),
+    Rival::new("ekf-whittle", "EKF, Whittle", "idam_whittle"),
+    Rival::new("idam-bayes", "IDAM, Bayes weighting, RVM", "idam_bayes"),
+    Rival::new("so3-whittle", "SO(3), Whittle", "idam_so3_whittle"),
+];
+
+/// Rivals on paper 001, whose own filters are all told the true flexure.
+pub(super) const Q_NNKF: &[Rival] =
+    &[Rival::new("q-kf-whittle", "Q-KF, Whittle", "q_nnkf_q_kf").identified("idam_whittle")];
+
+/// Rivals on paper 002 with a small flexure.
+pub(super) const MODEL_FREE: &[Rival] =
+    &[Rival::new("gauss-markov", "Gauss-Markov with delay, broad flexure", "model_free_delay")];
+
+/// Rivals on paper 002 with a small flexure and a skew.
+pub(super) const MODEL_FREE_SKEW: &[Rival] =
+    &[Rival::new("gauss-markov-skew", "Gauss-Markov with delay and skew, broad flexure", "model_free_delay_skew")];
+
+/// Rivals on paper 003.
+pub(super) const TUFTS_KUMARESAN: &[Rival] = &[
+    Rival::new("dcm-tufts-kumaresan", "attitude by cosines, Tufts-Kumaresan", "tufts_kumaresan"),
+    Rival::new("dcm-whittle", "attitude by cosines, Whittle", "tufts_kumaresan_whittle"),
+];
+
+/// Rivals on paper 004, whose own filter is told the true flexure.
+pub(super) const ERROR_RANGE: &[Rival] =
+    &[Rival::new("rate-whittle", "rate matching, Whittle", "error_range_weak_naive").identified("idam_whittle")];
