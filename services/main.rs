@@ -70,6 +70,19 @@ enum Command {
         #[arg(long, value_name = "N")]
         threads: Option<NonZeroUsize>,
     },
+    /// Tell how well the data of a simulated configuration would show the deformation, were the flexure's model known, against time
+    Bound {
+        configuration: PathBuf,
+        /// Length of the data, such as 10min or 2h; without it run.duration_s of the configuration, or 30min
+        #[arg(long, value_parser = humantime::parse_duration)]
+        duration: Option<Duration>,
+        /// Draw the standard deviations against time
+        #[arg(long, value_name = "FILE")]
+        svg: Option<PathBuf>,
+        /// Write the numbers as JSON
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
     /// Stage: simulated units (started by launch)
     Simulate(StageArgs),
     /// Stage: recorded units (started by launch)
@@ -121,6 +134,10 @@ fn main() -> ExitCode {
         }
         Command::Process { configuration, duration, out } => process(configuration, duration, &out),
         Command::Check { configuration } => check(configuration),
+        Command::Bound { configuration, duration, svg, json } => {
+            let duration_s = duration.map(|duration| duration.as_secs_f64());
+            bound(&bound::Options { configuration, duration_s, svg, json })
+        }
         Command::Reproduce { experiment: selection, trials, seed, quick, json, report, threads } => {
             let plan = reproduce::Plan { trials, seed, quick };
             reproduce(&reproduce::Options { selection, plan, json, report, threads })
@@ -141,6 +158,7 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
         || matches!(error.downcast_ref(), Some(replay::ReplayError::Transport(error)) if error.is_poisoned());
     let unusable = error.is::<pipeline::configuration::ConfigurationError>()
         || error.is::<check::CheckError>()
+        || matches!(error.downcast_ref(), Some(bound::BoundError::Configuration(_)))
         || matches!(error.downcast_ref(), Some(process::ProcessError::Recording(_)))
         || matches!(error.downcast_ref(), Some(replay::ReplayError::Recording(_)))
         || error.is::<NoSuchArea>()
@@ -202,6 +220,11 @@ fn check_recordings(path: &std::path::Path) -> Result<(), check::CheckError> {
 
 fn check(path: PathBuf) -> Outcome {
     println!("{}", check::run(&path)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn bound(options: &bound::Options) -> Outcome {
+    print!("{}", bound::run(options)?);
     Ok(ExitCode::SUCCESS)
 }
 

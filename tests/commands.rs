@@ -154,7 +154,8 @@ fn help_names_every_command() {
     let output = deckflex(&place, &["--help"]);
     let said = String::from_utf8(output.stdout.clone()).unwrap();
     assert!(output.status.success());
-    for command in ["launch", "process", "check", "simulate", "replay", "synchronise", "estimate", "identify"] {
+    for command in ["launch", "process", "check", "bound", "simulate", "replay", "synchronise", "estimate", "identify"]
+    {
         assert!(said.contains(&format!("\n  {command} ")), "{command}: {said}");
         let output = deckflex(&place, &[command, "--help"]);
         assert!(output.status.success() && !output.stdout.is_empty(), "{command}");
