@@ -19,7 +19,7 @@ const WIDTH: u32 = 960;
 /// Height of an area's chart, px.
 const HEIGHT: u32 = 460;
 /// Px around the chart: left, right, top, bottom.
-const MARGINS: [u32; 4] = [84, 28, 74, 66];
+const MARGINS: [u32; 4] = [84, 40, 74, 66];
 /// Size that the backend divides by about 1.24 for its letters.
 const LETTERS: i32 = 19;
 const INK: RGBColor = RGBColor(27, 31, 36);
@@ -34,8 +34,8 @@ const TIMES_S: [f64; 20] = [
 ];
 /// So many points show all that a line of this width can.
 const MOST: usize = 500;
-/// Beyond so many decades only powers of ten have a number.
-const DECADES: f64 = 3.0;
+/// Numbers of the time's axis stand at least so far apart, px.
+const APART: i32 = 68;
 
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
@@ -106,15 +106,24 @@ fn grid(canvas: &Canvas, chart: &Chart, times: &Range<f64>, sigmas: &Range<f64>)
         let (x, y) = chart.backend_coord(&(t_s.log10(), sigma.log10()));
         (x - origin_x, y - origin_y)
     };
+    let mut free = 0;
     for t_s in TIMES_S.into_iter().filter(|t_s| times.contains(t_s)) {
         let (x, _) = place(t_s, sigmas.start);
         canvas.draw(&PathElement::new(vec![(x, rows.start), (x, rows.end)], GRID))?;
+        if x < free {
+            continue;
+        }
+        free = x + APART;
         canvas.draw(&Text::new(time(t_s), (x, rows.end + 18), letters(HPos::Center, VPos::Center)))?;
     }
     for sigma in numbers(sigmas) {
         let (_, y) = place(times.start, sigma);
         canvas.draw(&PathElement::new(vec![(columns.start, y), (columns.end, y)], GRID))?;
-        canvas.draw(&Text::new(sigma.to_string(), (columns.start - 8, y), letters(HPos::Right, VPos::Center)))?;
+        canvas.draw(&Text::new(
+            format!("{}", (sigma * 1e6).round() / 1e6),
+            (columns.start - 8, y),
+            letters(HPos::Right, VPos::Center),
+        ))?;
     }
     canvas.draw(&Rectangle::new([(columns.start, rows.start), (columns.end, rows.end)], INK))?;
     let middle = (columns.start + columns.end) / 2;
@@ -143,9 +152,13 @@ fn ranges(curve: &[Point]) -> (Range<f64>, Range<f64>) {
     (first.t_s.max(0.1)..end, least / 1.15..most * 1.15)
 }
 
-/// Where the axis of standard deviations has numbers: 1, 2 and 5 of each decade, or powers of ten where there are many.
+/// Where the axis of standard deviations has numbers: the fewer of each decade the more decades there are.
 fn numbers(range: &Range<f64>) -> Vec<f64> {
-    let steps: &[f64] = if (range.end / range.start).log10() > DECADES { &[1.0] } else { &[1.0, 2.0, 5.0] };
+    let steps: &[f64] = match (range.end / range.start).log10() {
+        decades if decades < 1.2 => &[1.0, 1.5, 2.0, 3.0, 5.0, 7.0],
+        decades if decades < 3.0 => &[1.0, 2.0, 5.0],
+        _ => &[1.0],
+    };
     let decades = -6..=7;
     let all = decades.flat_map(|decade| steps.iter().map(move |step| step * 10f64.powi(decade)));
     all.filter(|sigma| range.contains(sigma)).collect()

@@ -2,10 +2,13 @@
 
 use messages::{Flags, Solution};
 use pipeline::offline::Sink;
+use std::collections::VecDeque;
 
 const SECOND_NS: i64 = 1_000_000_000;
+/// The covariance swings with the ship, so a standard deviation is a mean over about two of her swings, s.
+pub const SWINGS_S: f64 = 20.0;
 
-/// What the filter knows at one time.
+/// What the filter knows at one time: root mean square over the runs and the last 20 s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Time since the first sample, s.
@@ -19,7 +22,7 @@ pub struct Point {
 /// Variances of the total deformation, then of its static part, rad^2.
 type Variances = [[f64; 3]; 2];
 
-/// Takes one run's variances, an area at a time, of each second the last valid ones.
+/// Takes one run's variances, the mean of the valid ones of each second.
 pub struct Watch<F: FnMut(u64)> {
     areas: Vec<Seen>,
     begin_ns: Option<i64>,
@@ -30,9 +33,27 @@ pub struct Watch<F: FnMut(u64)> {
 /// What was seen of one area.
 #[derive(Clone, Default)]
 pub struct Seen {
-    seconds: Vec<Option<Variances>>,
+    seconds: Vec<Second>,
     /// Flags of the last solution.
     flags: Flags,
+}
+
+/// The valid solutions of a second.
+#[derive(Clone, Copy, Default)]
+struct Second {
+    sums: Variances,
+    count: f64,
+}
+
+impl Second {
+    fn add(&mut self, variances: &Variances) {
+        (0..2).for_each(|part| (0..3).for_each(|axis| self.sums[part][axis] += variances[part][axis]));
+        self.count += 1.0;
+    }
+
+    fn mean(&self) -> Option<Variances> {
+        (self.count > 0.0).then(|| self.sums.map(|part| part.map(|sum| sum / self.count)))
+    }
 }
 
 impl<F: FnMut(u64)> Watch<F> {
@@ -51,7 +72,7 @@ impl<F: FnMut(u64)> Sink for Watch<F> {
     fn solution(&mut self, solution: &Solution) {
         let time_ns = solution.header.time_ns;
         let since_ns = (time_ns - *self.begin_ns.get_or_insert(time_ns)).max(0);
-        // the last solution that is not beyond a whole second speaks for it
+        // a second ends with the solution at its end
         let second = (since_ns + SECOND_NS - 1) / SECOND_NS;
         let reached = second as u64;
         if reached > self.reached {
@@ -60,11 +81,10 @@ impl<F: FnMut(u64)> Sink for Watch<F> {
         }
         let seen = &mut self.areas[solution.area as usize];
         seen.flags = solution.flags;
-        seen.seconds.resize(seen.seconds.len().max(second as usize + 1), None);
+        seen.seconds.resize(seen.seconds.len().max(second as usize + 1), Second::default());
         if solution.is_valid() {
             let diagonal = |p: &[f64; 9]| [p[0], p[4], p[8]];
-            seen.seconds[second as usize] =
-                Some([diagonal(&solution.covariance), diagonal(&solution.static_covariance)]);
+            seen.seconds[second as usize].add(&[&solution.covariance, &solution.static_covariance].map(diagonal));
         }
     }
 }
@@ -72,14 +92,19 @@ impl<F: FnMut(u64)> Sink for Watch<F> {
 /// Root mean square of the runs' standard deviations at each second at which all runs have valid ones.
 pub fn pooled(runs: &[&Seen], duration_s: f64) -> Vec<Point> {
     let seconds = runs.iter().map(|run| run.seconds.len()).min().unwrap_or(0);
+    let mut last = VecDeque::new();
     let point = |second: usize| {
-        let mut sums: Variances = [[0.0; 3]; 2];
+        let t_s = (second as f64).min(duration_s);
+        let mut runs_mean = Second::default();
         for run in runs {
-            let variances = run.seconds[second]?;
-            (0..2).for_each(|part| (0..3).for_each(|axis| sums[part][axis] += variances[part][axis]));
+            runs_mean.add(&run.seconds[second].mean()?);
         }
-        let [total, fixed] = sums.map(|part| part.map(|sum| (sum / runs.len() as f64).sqrt()));
-        Some(Point { t_s: (second as f64).min(duration_s), total, fixed })
+        last.push_back((t_s, runs_mean.mean()?));
+        while last.pop_front_if(|(then_s, _)| *then_s <= t_s - SWINGS_S).is_some() {}
+        let mut swings = Second::default();
+        last.iter().for_each(|(_, variances)| swings.add(variances));
+        let [total, fixed] = swings.mean()?.map(|part| part.map(f64::sqrt));
+        Some(Point { t_s, total, fixed })
     };
     (0..seconds).filter_map(point).collect()
 }

@@ -3,7 +3,7 @@
 use estimation::flexure::Flexure;
 use pipeline::configuration::{
     Area, AreaSimulation, Configuration, ConfigurationError, EstimatorSettings, FilterMethod, IdentifierMethod,
-    MatchingMethod, RangeMethod, RegistrationMethod, Simulation, Source,
+    MatchingMethod, RangeMethod, RegistrationMethod, Source,
 };
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -127,18 +127,13 @@ pub fn surveyed(area: &Area) -> Option<[f64; 3]> {
 /// What the truth of an area has and the model of the bound has not, with its key.
 pub fn left_out(configuration: &Configuration, area: usize) -> Vec<&'static str> {
     let (ship, truth) = (&configuration.simulation, &configuration.areas[area].simulation);
-    let (still, usual) = (Simulation::default(), AreaSimulation::default());
+    let usual = AreaSimulation::default();
     let parts = [
         (truth.coupling.is_some(), "flexure in step with the ship's swing (area.simulation.coupling)"),
         (truth.impulses.is_some(), "impulsive waves (area.simulation.impulses)"),
         (!truth.flexure_changes.is_empty(), "changes of the flexure model (area.simulation.flexure_changes)"),
         (truth.starts_at_rest, "flexure that is zero at the start (area.simulation.starts_at_rest)"),
-        (truth.quasi_static != usual.quasi_static, "the drift of the static part (area.simulation.quasi_static)"),
         (truth.outliers != usual.outliers, "samples that are far off (area.simulation.outliers)"),
-        (
-            truth.bias_wander != usual.bias_wander || ship.bias_wander != still.bias_wander,
-            "wandering gyro biases (bias_wander)",
-        ),
         (
             truth.gyro.is_some() || truth.accel.is_some() || ship.gyro.is_some() || ship.accel.is_some(),
             "units whose true errors are not of the configured grade (simulation.gyro, simulation.accel)",

@@ -1,7 +1,7 @@
 //! What the runs came to, as a reader wants it.
 
 use crate::SEEDS;
-use crate::curve::Point;
+use crate::curve::{Point, SWINGS_S};
 use frames::unit::ARCSEC;
 use std::fmt;
 
@@ -130,7 +130,7 @@ impl fmt::Display for Report {
         let seeds = SEEDS.map(|seed| seed.to_string()).join(", ");
         writeln!(
             f,
-            "Root mean square over {} simulated runs (seeds {seeds}) of {}.",
+            "Root mean square over {} simulated runs (seeds {seeds}) of {}, and each time over the {SWINGS_S} s before it.",
             SEEDS.len(),
             time(self.duration_s)
         )?;
