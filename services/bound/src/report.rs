@@ -153,7 +153,7 @@ fn number(value: f64) -> String {
     }
 }
 
-/// Seconds below two minutes, else minutes, else hours, without needless decimals.
+/// In seconds below a minute, in minutes up to two hours, in hours beyond; without needless decimals.
 pub fn time(t_s: f64) -> String {
     let told = |value: f64, unit: &str| {
         let text = format!("{value:.1}");

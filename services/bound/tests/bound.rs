@@ -66,9 +66,8 @@ fn the_demonstrations_sigma_falls_with_time_about_every_axis() {
     for pair in rows.windows(2) {
         let [before, after] = [0, 1].map(|i| pair[i].point.unwrap());
         for axis in 0..3 {
-            // what the lever arm and the sway show of the flexure of the moment goes up and down by some hundredths
-            assert!(after.total[axis] < 1.03 * before.total[axis], "{before:?} {after:?}");
-            assert!(after.fixed[axis] < 1.03 * before.fixed[axis], "{before:?} {after:?}");
+            assert!(after.total[axis] < before.total[axis], "{before:?} {after:?}");
+            assert!(after.fixed[axis] < before.fixed[axis], "{before:?} {after:?}");
         }
     }
     let (first, last) = (rows[0].point.unwrap(), rows[5].point.unwrap());
