@@ -42,8 +42,15 @@ pub(super) fn judged(claim: Claim, ours: f64, values: &[f64]) -> Row {
 
 /// The trial in which a figure is the largest, in words.
 pub(super) fn largest(trials: &[&Measured], figure: impl Fn(&Measured) -> f64) -> String {
-    let largest = trials.iter().map(|trial| (figure(trial), trial.seed)).max_by(|a, b| a.0.total_cmp(&b.0));
-    largest.map_or(String::new(), |(figure, seed)| format!("The largest of a trial is {figure:.3}, of seed {seed}."))
+    largest_of(trials.iter().map(|trial| (figure(trial), trial.seed)))
+}
+
+/// The same of figures with their seeds.
+pub(super) fn largest_of(figures: impl Iterator<Item = (f64, u64)>) -> String {
+    let largest = figures.max_by(|a, b| a.0.total_cmp(&b.0));
+    largest.map_or("No trial has one.".into(), |(figure, seed)| {
+        format!("The largest of a trial is {figure:.3}, of seed {seed}.")
+    })
 }
 
 /// The ratios about each axis and over all, then both ends of their intervals.

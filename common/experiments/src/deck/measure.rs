@@ -7,11 +7,11 @@ use crate::{Data, Fault, Point, Track, Trial};
 use std::ops::RangeInclusive;
 
 /// The spans of time in which errors count, s: after five minutes, and the minutes before.
-pub(super) const SPANS: [RangeInclusive<f64>; 2] = [300.0..=f64::INFINITY, 60.0..=300.0];
+pub(super) const SPANS: [RangeInclusive<f64>; 2] = [EARLY_S..=f64::INFINITY, FROM_S..=EARLY_S];
 /// An estimate is expected from here on, s.
 const FROM_S: f64 = 60.0;
 /// The end of the first minutes, s.
-const EARLY_S: f64 = 300.0;
+pub(super) const EARLY_S: f64 = 300.0;
 
 /// What is kept of a trial.
 #[derive(Clone, Debug)]

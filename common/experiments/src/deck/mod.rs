@@ -11,6 +11,8 @@ mod measure;
 mod method;
 mod paired;
 mod scenario;
+mod spikes;
+mod unseen;
 
 use crate::Study;
 use scenario::{SCENARIOS, Scenario};
@@ -21,7 +23,10 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The studies of this experiment. A quick run takes some scenarios only, and shortens them.
 pub(crate) fn studies() -> Vec<Study> {
-    SCENARIOS.iter().map(study).collect()
+    let mut studies: Vec<Study> = SCENARIOS.iter().map(study).collect();
+    studies.push(spikes::study());
+    studies.extend(unseen::studies());
+    studies
 }
 
 fn study(scenario: &'static Scenario) -> Study {
