@@ -190,3 +190,48 @@ fn late(c: &mut Configuration, delay: f64, skew: f64) {
     c.areas[0].simulation.wire = Wire { delay, skew, ..c.areas[0].simulation.wire };
     c.areas[0].simulation.flexure_changes.clear();
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::super::method;
+    use super::*;
+    use pipeline::configuration::{IdentifierMethod, MatchingMethod};
+    use std::collections::BTreeSet;
+
+    /// A preset that does not exist, or a method that is told what it should find out, would fail after hours.
+    #[test]
+    fn every_scenario_has_its_methods_and_only_one_is_told_the_truth() {
+        let trial = Trial { index: 0, seed: 1, quick: false };
+        for scenario in &SCENARIOS {
+            let configuration = scenario.configuration(&trial).unwrap().unwrap();
+            let ours = method::default(&configuration).unwrap();
+            let area = &ours.areas[0];
+            assert_eq!(area.estimator.matching, MatchingMethod::Deck);
+            assert!(area.installation.is_none() && matches!(area.identifier.method, IdentifierMethod::Learnt(_)));
+            let truth = &method::told(&ours).areas[0];
+            let IdentifierMethod::Fixed(flexure) = truth.identifier.method else { panic!("{}", scenario.id) };
+            for (told, real) in flexure.iter().zip(area.simulation.flexure) {
+                assert_eq!((told.mu, told.b, told.sigma), (real.mu, real.b, real.sigma));
+            }
+            for rival in scenario.rivals {
+                if let IdentifierMethod::Fixed(told) = rival.on(&configuration).unwrap().areas[0].identifier.method {
+                    assert_ne!(told[0].sigma, flexure[0].sigma, "{} is told the truth", rival.id);
+                }
+            }
+        }
+        let ids: BTreeSet<&str> = SCENARIOS.iter().map(|scenario| scenario.id).collect();
+        assert_eq!(ids.len(), SCENARIOS.len());
+    }
+
+    #[test]
+    fn the_installation_of_paper_001_is_turned_by_the_angle() {
+        let trial = Trial { index: 0, seed: 1, quick: false };
+        for (id, degrees) in [("001", 3.0), ("001-0", 0.0), ("001-179", 179.0)] {
+            let scenario = SCENARIOS.iter().find(|scenario| scenario.id == id).unwrap();
+            let configuration = scenario.configuration(&trial).unwrap().unwrap();
+            let angle = configuration.areas[0].simulation.installation.norm() / DEGREE;
+            assert!((angle - degrees).abs() < 1e-9, "{id}: {angle}");
+        }
+    }
+}
