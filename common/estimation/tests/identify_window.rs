@@ -20,6 +20,7 @@ const SETTINGS: Settings = Settings {
     dictionary: 1,
     method: Method::Rvm,
     safety: true,
+    provisional: false,
     area: 3,
 };
 
@@ -188,6 +189,30 @@ fn the_chain_takes_the_drift_out_with_the_right_sign() {
         };
         let (taken, left, wrong) = (with_drift(1.0), with_drift(0.0), with_drift(-1.0));
         assert!(taken < 0.02 * left && wrong > 1.8 * left, "{seed}: {taken:e} {left:e} {wrong:e}");
+    }
+}
+
+#[test]
+fn a_late_unit_is_re_timed_before_its_flexure_is_looked_at() {
+    for seed in 0..4 {
+        let (points, anchor) = held(scene(0.1, seed), 120.0);
+        let truth = Chain::rebuild(&points, &anchor).unwrap();
+        for (late, sign) in [(2, 1.0), (3, -1.0)] {
+            // two or three points late, or the other unit
+            let mut delayed = points[late..].to_vec();
+            for (point, earlier) in delayed.iter_mut().zip(&points) {
+                match sign {
+                    1.0 => point.attitude_s = earlier.attitude_s,
+                    _ => point.attitude_m = earlier.attitude_m,
+                }
+            }
+            let told = |delay_s: f64| Anchor { delay_s, ..anchor };
+            let left = Chain::rebuild(&delayed, &anchor).unwrap();
+            let found = Chain::rebuild(&delayed, &told(sign * 0.1 * late as f64)).unwrap();
+            let wrong = Chain::rebuild(&delayed, &told(-sign * 0.1 * late as f64)).unwrap();
+            assert!((found.variance / truth.variance - 1.0).abs() < 0.1, "{seed} {late}");
+            assert!(left.variance > 5.0 * truth.variance && wrong.variance > 3.0 * left.variance, "{seed} {late}");
+        }
     }
 }
 

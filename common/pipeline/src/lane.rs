@@ -234,6 +234,7 @@ pub fn identifier(configuration: &Configuration, area: usize) -> Box<dyn Identif
             dictionary: told.dictionary,
             method,
             safety: told.safety,
+            provisional: configuration.areas[area].estimator.matching == MatchingMethod::Deck,
             area: area as u32,
         })),
         IdentifierMethod::Fixed(_) => Box::new(Fixed),

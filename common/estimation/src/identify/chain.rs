@@ -5,6 +5,7 @@
 
 use super::autocovariance::detrend;
 use super::window::Point;
+use crate::matching::retiming::{Attitudes, Together};
 use crate::matching::so3::symmetric;
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
 use messages::{ImuPair, Solution};
@@ -25,6 +26,10 @@ pub struct Anchor {
     pub fixed: Rot<Main, Sub>,
     /// Covariance of the constant's error, rad^2, in the main unit's starting axes.
     pub covariance: Matrix3<f64>,
+    /// By how much the sub unit's stamps are late, s.
+    pub delay_s: f64,
+    /// By how much the delay grows in a second.
+    pub skew: f64,
 }
 
 /// The covariance of the constant is widened so much before the window's own data may correct it.
@@ -45,7 +50,23 @@ impl Anchor {
             scale: scale.iter().all(|x| x.is_finite()).then_some(scale)?,
             fixed: Rot::from_quaternion(solution.static_q)?,
             covariance: a_m * Matrix3::from_row_slice(&solution.covariance) * a_m.transpose(),
+            delay_s: Some(solution.delay).filter(|delay| delay.is_finite())?,
+            skew: Some(solution.skew).filter(|skew| skew.is_finite())?,
         })
+    }
+
+    /// The points with the attitudes of one moment each, for those that the window covers; a delay would turn the ship's motion into a rate of flexure.
+    fn together(&self, points: &[Point]) -> Vec<Point> {
+        let since = |from_ns: i64, point: &Point| unit::seconds(point.time_ns - from_ns);
+        let begin_ns = points.first().map_or(0, |first| first.time_ns);
+        let attitudes =
+            Attitudes::of(points.iter().map(|point| (since(begin_ns, point), point.attitude_m, point.attitude_s)));
+        let moment = |(node, point): (usize, &Point)| {
+            let late_s = self.delay_s + self.skew * since(self.time_ns, point);
+            let Together { a_m, a_s, .. } = attitudes.at(node, late_s)?;
+            Some(Point { attitude_m: a_m, attitude_s: a_s, ..*point })
+        };
+        points.iter().enumerate().filter_map(moment).collect()
     }
 
     /// The constant at each point; `None` if no point stands at the anchor's instant.
@@ -86,6 +107,13 @@ pub struct Chain {
 impl Chain {
     /// Rebuilds the window; `None` if the anchor's instant is not in it, there are under three points, or a number is not finite.
     pub fn rebuild(points: &[Point], anchor: &Anchor) -> Option<Self> {
+        let moments;
+        let points = if anchor.delay_s == 0.0 {
+            points
+        } else {
+            moments = anchor.together(points);
+            &moments
+        };
         if points.len() < 3 {
             return None;
         }

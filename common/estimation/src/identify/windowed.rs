@@ -66,7 +66,7 @@ impl Identifier for Windowed {
         let chain = self.chain(&Anchor::of(pair, solution)?)?;
         self.kept = Some(chain.end);
         let axes = self.identify(&chain)?;
-        let length_s = self.window.length_s();
+        let length_s = if self.settings.provisional { f64::INFINITY } else { self.window.length_s() };
         let models: [Flexure; 3] = match self.settings.safety {
             true => axes.map(|axis| safe(&axis, length_s)),
             false => axes.map(|axis| axis.flexure),

@@ -120,6 +120,12 @@ impl Attitudes {
         Self { nodes: VecDeque::with_capacity(room) }
     }
 
+    /// Those of instants in order, s, without velocities.
+    pub fn of(instants: impl Iterator<Item = (f64, Rot<MainStart, Main>, Rot<SubStart, Sub>)>) -> Self {
+        let node = |(time_s, a_m, a_s)| Node { time_s, a_m, a_s, gained: Velocities::ZERO };
+        Self { nodes: instants.map(node).collect() }
+    }
+
     /// Takes in what both units felt.
     pub fn push(&mut self, motion: &Motion) {
         let Motion { time_s, a_m, a_s, .. } = *motion;
@@ -145,16 +151,21 @@ impl Attitudes {
         self.nodes.push_back(node);
     }
 
-    /// Both units as they are when the sub unit's stamps are late by `shift_s`; `None` while that instant is not covered.
+    /// Both units at the last moment that both have felt when the sub unit's stamps are late by `shift_s`; `None` while that is not covered.
     pub fn together(&self, shift_s: f64) -> Option<Together> {
-        let newest = self.nodes.back()?;
-        let main = self.place(newest.time_s - shift_s.max(0.0))?;
+        self.at(self.nodes.len().checked_sub(1)?, shift_s)
+    }
+
+    /// Both units at one moment: the sub unit's of a node where its stamps are late by `shift_s`, the main unit's where they are early.
+    pub fn at(&self, node: usize, shift_s: f64) -> Option<Together> {
+        let node = self.nodes.get(node)?;
+        let main = self.place(node.time_s - shift_s.max(0.0))?;
         let (a_m, w_m) = self.attitude(&main, |node| node.a_m);
         let m = self.velocity(&main, |node| node.gained.m);
         let (a_s, s) = match shift_s {
-            0.0.. => (newest.a_s, newest.gained.s),
+            0.0.. => (node.a_s, node.gained.s),
             _ => {
-                let sub = self.place(newest.time_s + shift_s)?;
+                let sub = self.place(node.time_s + shift_s)?;
                 (self.attitude(&sub, |node| node.a_s).0, self.velocity(&sub, |node| node.gained.s))
             }
         };

@@ -12,6 +12,7 @@ use std::path::Path;
 const DEFAULT: &str = r#"
 [area.estimator]
 matching = "deck"
+range = "observed"
 
 [area.identifier]
 method = "whittle"

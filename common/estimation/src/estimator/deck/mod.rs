@@ -35,6 +35,8 @@ const LARGEST_FLEXURE: f64 = 0.05;
 const AT_ONCE: usize = 5;
 /// The history is run over again when it has grown by this factor.
 const GROWN: f64 = 1.2;
+/// By how much more than a step the range is widened before it.
+const MARGIN: f64 = 1.2;
 /// The delay is registered from so much data, s.
 const DELAY_DATA_S: f64 = 60.0;
 
@@ -85,6 +87,9 @@ pub struct DeckEstimator {
     shadow: Option<Shadow>,
     /// Length of the history from which on it is worth running over again, s.
     again_s: f64,
+    /// The range last published, and what it must not be less than before a step, rad.
+    range: [f64; 3],
+    announced: [f64; 3],
     adoption: Adoption,
     /// The parameters with which the history was last run over.
     replayed_id: u64,
@@ -116,6 +121,8 @@ impl DeckEstimator {
             live: None,
             shadow: None,
             again_s: 0.0,
+            range: [0.0; 3],
+            announced: [0.0; 3],
             adoption: Adoption::new(),
             replayed_id: 0,
             news: Flags::empty(),
@@ -201,6 +208,7 @@ impl DeckEstimator {
             self.live = Some(Box::new(running));
         }
         self.replayed_id = self.adoption.id();
+        self.announced = [0.0; 3];
         self.again_s = self.history.length_s() * GROWN;
     }
 
@@ -227,10 +235,28 @@ impl DeckEstimator {
             }
         }
         if at_end && shadow.done == steps.len() && !steps.is_empty() {
-            // one that its data disagree with is no better than the live one
-            let better = shadow.running.surprise().is_small() || self.live.is_none();
-            let running = self.shadow.take().map(|shadow| shadow.running);
-            self.live = if better { running } else { self.live.take() };
+            self.take_over();
+        }
+    }
+
+    /// The second filter, which has caught up, becomes the live one, unless its data disagree with it. Where the step is larger than the range that
+    /// is published, the range is widened first, and the step comes with the next interval.
+    fn take_over(&mut self) {
+        let (Some(shadow), Some(live)) = (&self.shadow, &self.live) else {
+            self.live = self.shadow.take().map(|shadow| shadow.running);
+            return;
+        };
+        if !shadow.running.surprise().is_small() {
+            self.shadow = None;
+            return;
+        }
+        let total = |running: &Running| running.deck.view(running.is_coasting()).deformation;
+        let step = (total(&shadow.running) * total(live).inverse()).log().array().map(f64::abs);
+        let covered = step.iter().zip(&self.range).all(|(step, range)| step <= range);
+        if covered {
+            self.live = self.shadow.take().map(|shadow| shadow.running);
+        } else {
+            self.announced = step.map(|step| step * MARGIN);
         }
     }
 
@@ -274,7 +300,7 @@ impl DeckEstimator {
             solution.registered_sigma = registered.covariance.diagonal().map(f64::sqrt).into();
         }
         let interval_s = unit::seconds(pair.interval_ns).max(f64::MIN_POSITIVE);
-        solution.range = self.evaluation.range(&Evidence {
+        let range = self.evaluation.range(&Evidence {
             time_s: running.elapsed_s(),
             interval_s,
             w_im_m: Vec3::<Main>::from(pair.dtheta_m) / interval_s,
@@ -284,6 +310,9 @@ impl DeckEstimator {
             rate_covariance: rate_rows * p * rate_rows.transpose(),
             rate_with_static: rate_rows * p * static_rows.transpose(),
         });
+        let announced = if self.shadow.is_some() { self.announced } else { [0.0; 3] };
+        solution.range = std::array::from_fn(|axis| range[axis].max(announced[axis]));
+        self.range = solution.range;
         solution.valid = u32::from(!coasting && covariance.diagonal().max() < LOST);
         attitude_of_deck(&mut solution, pair, deformation, &covariance);
         solution
