@@ -52,6 +52,11 @@ impl Adoption {
         self.params.map_or(0, |params| params.id)
     }
 
+    /// The instant at which the data of the set in force begin, ns.
+    pub(super) fn window_begin_ns(&self) -> Option<i64> {
+        self.params.map(|params| params.window_begin_ns)
+    }
+
     /// The flexure model in force.
     pub(super) fn flexure(&self) -> Option<[Flexure; 3]> {
         self.params.as_ref().map(model)

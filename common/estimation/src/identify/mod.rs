@@ -8,6 +8,7 @@
 //! |---|---|
 //! | points at 10 Hz, gaps, when to fire | [`window`] |
 //! | relative rate of the window | [`chain`] |
+//! | whether the flexure has become another | [`change`] |
 //! | one axis by a method | [`method`] |
 //! | what a filter may safely use | [`safety`] |
 //! | all together as an [`Identifier`](crate::Identifier) | [`Windowed`] |
@@ -27,6 +28,7 @@ pub mod autocovariance;
 pub mod axis;
 pub mod bound;
 pub mod chain;
+pub mod change;
 pub mod dictionary;
 pub mod expectation;
 mod fixed;

@@ -54,17 +54,27 @@ const FLOOR_RANGE: f64 = 25.0;
 
 /// Identifies an axis; `None` if the band is empty or nothing converges.
 pub fn identify(series: &Series, settings: &Settings) -> Option<Identified> {
-    let data = Periodogram::new(series, settings.taper, settings.band_hz)?;
-    let fit = Fit { data, kind: series.kind, step_s: series.step_s, settings: *settings };
-    let starts = STARTS.into_iter().chain(fit.peak());
-    let found = starts.filter_map(|(mu, b)| fit.climb(fit.start(mu, b)));
-    let (logs, _) = found.min_by(|one, other| one.1.total_cmp(&other.1))?;
+    let fit = Fit::new(series, settings)?;
+    let (logs, _) = fit.best()?;
     let mut information = fit.scores(&logs).1;
     if !settings.floor {
         information[(3, 3)] = 1.0;
     }
     let covariance = information.try_inverse()?.fixed_view::<3, 3>(0, 0).into_owned();
     Identified::new(flexure(&logs), &covariance, series.length_s()).filter(|found| found.flexure.is_sound())
+}
+
+/// By how much better a model of its own fits the last values of a series than the series' model, for so many last values each: twice the difference of
+/// the logarithms of the posterior densities, about chi-squared with four degrees of freedom while nothing changes. `None` where a part cannot be fitted.
+pub fn departures(series: &Series, lasts: &[usize], settings: &Settings) -> Option<Vec<f64>> {
+    let (whole, _) = Fit::new(series, settings)?.best()?;
+    let departure = |&last: &usize| {
+        let values = series.values.get(series.values.len().checked_sub(last)?..)?;
+        let fit = Fit::new(&Series { values, ..*series }, settings)?;
+        let (_, least) = fit.best()?;
+        Some(2.0 * (fit.cost(&whole) - least))
+    };
+    lasts.iter().map(departure).collect()
 }
 
 struct Fit {
@@ -80,6 +90,18 @@ fn flexure(logs: &Vector4<f64>) -> Flexure {
 }
 
 impl Fit {
+    fn new(series: &Series, settings: &Settings) -> Option<Self> {
+        let data = Periodogram::new(series, settings.taper, settings.band_hz)?;
+        Some(Self { data, kind: series.kind, step_s: series.step_s, settings: *settings })
+    }
+
+    /// The best logarithms from all starts, and their cost.
+    fn best(&self) -> Option<(Vector4<f64>, f64)> {
+        let starts = STARTS.into_iter().chain(self.peak());
+        let found = starts.filter_map(|(mu, b)| self.climb(self.start(mu, b)));
+        found.min_by(|one, other| one.1.total_cmp(&other.1))
+    }
+
     /// Mean power of the tenth of the highest frequencies.
     fn floor(&self) -> f64 {
         let count = self.data.power.len();

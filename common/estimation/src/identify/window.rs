@@ -103,6 +103,15 @@ impl Window {
         }
     }
 
+    /// Forgets all but the last points.
+    pub fn keep(&mut self, length_s: f64) {
+        let Some(last) = self.points.back() else { return };
+        let oldest_ns = last.time_ns - unit::nanoseconds(length_s);
+        while self.points.front().is_some_and(|first| first.time_ns < oldest_ns) {
+            self.points.pop_front();
+        }
+    }
+
     /// The points, oldest first.
     pub fn points(&mut self) -> &[Point] {
         self.points.make_contiguous()

@@ -1,6 +1,7 @@
 use super::Settings;
 use super::axis::Identified;
 use super::chain::{Anchor, Chain};
+use super::change::changed;
 use super::safety::safe;
 use super::series::{Kind, Series};
 use super::window::Window;
@@ -63,7 +64,15 @@ impl Identifier for Windowed {
         if !due {
             return None;
         }
-        let chain = self.chain(&Anchor::of(pair, solution)?)?;
+        let anchor = Anchor::of(pair, solution)?;
+        let mut chain = self.chain(&anchor)?;
+        if self.settings.provisional
+            && let Some(length_s) = changed(&chain.rates, chain.step_s)
+        {
+            self.window.keep(length_s);
+            self.kept = None;
+            chain = self.chain(&anchor)?;
+        }
         self.kept = Some(chain.end);
         let axes = self.identify(&chain)?;
         let length_s = if self.settings.provisional { f64::INFINITY } else { self.window.length_s() };

@@ -35,6 +35,8 @@ const LARGEST_FLEXURE: f64 = 0.05;
 const AT_ONCE: usize = 5;
 /// The history is run over again when it has grown by this factor.
 const GROWN: f64 = 1.2;
+/// A window that begins so long after the first solution does not speak of the first minutes, s.
+const LATEST_WINDOW_S: f64 = 10.0;
 /// By how much more than a step the range is widened before it.
 const MARGIN: f64 = 1.2;
 /// The delay is registered from so much data, s.
@@ -87,6 +89,8 @@ pub struct DeckEstimator {
     shadow: Option<Shadow>,
     /// Length of the history from which on it is worth running over again, s.
     again_s: f64,
+    /// When the first filter went live, ns.
+    started_ns: i64,
     /// The range last published, and what it must not be less than before a step, rad.
     range: [f64; 3],
     announced: [f64; 3],
@@ -121,6 +125,7 @@ impl DeckEstimator {
             live: None,
             shadow: None,
             again_s: 0.0,
+            started_ns: i64::MAX,
             range: [0.0; 3],
             announced: [0.0; 3],
             adoption: Adoption::new(),
@@ -212,11 +217,21 @@ impl DeckEstimator {
         self.again_s = self.history.length_s() * GROWN;
     }
 
+    /// Whether the parameters in force speak of the end of the history only, the flexure having become another one.
+    fn is_of_another_flexure(&self) -> bool {
+        let begin_ns = self.adoption.window_begin_ns().unwrap_or(i64::MIN);
+        let since_start_s = unit::seconds(begin_ns.saturating_sub(self.started_ns));
+        self.live.is_some() && since_start_s > LATEST_WINDOW_S
+    }
+
     /// Lets the second filter catch up; where it has, it takes over. `at_end` says that the live filter stands at the end of the history.
     fn catch_up(&mut self, at_end: bool) {
         let news = self.adoption.id() != self.replayed_id && self.history.length_s() >= self.again_s;
         if news && self.live.is_some() && self.shadow.is_none() && self.history.is_complete() {
             self.run_again();
+        }
+        if self.is_of_another_flexure() {
+            self.history.end();
         }
         let Some(shadow) = &mut self.shadow else { return };
         if !self.history.is_complete() && self.live.is_some() {
@@ -244,6 +259,7 @@ impl DeckEstimator {
     fn take_over(&mut self) {
         let (Some(shadow), Some(live)) = (&self.shadow, &self.live) else {
             self.live = self.shadow.take().map(|shadow| shadow.running);
+            self.started_ns = self.live.as_ref().map_or(i64::MAX, |live| live.last_ns());
             return;
         };
         if !shadow.running.surprise().is_small() {

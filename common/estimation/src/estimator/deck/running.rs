@@ -44,6 +44,11 @@ impl Running {
         self.coasting
     }
 
+    /// The last instant, ns.
+    pub fn last_ns(&self) -> i64 {
+        self.last_ns
+    }
+
     /// Time since the start, s.
     pub fn elapsed_s(&self) -> f64 {
         unit::seconds(self.last_ns - self.begin_ns)
