@@ -26,6 +26,8 @@ pub struct Increment {
     pub rate_changes: Matrix3<f64>,
     /// Velocity increments; `None` if some were lost on the way or cannot be true.
     pub velocities: Option<Velocities>,
+    /// So much of the duration had a spike in it, s: a velocity increment may have been replaced by what its neighbours say.
+    pub spiked_s: f64,
 }
 
 /// Velocity increments of both units, each in its own starting axes, m/s.
@@ -56,6 +58,7 @@ impl Increment {
             dtheta_m: (start_m.inverse() * next.a_m).log(),
             disturbance: self.disturbance.hypot(next.disturbance),
             rate_changes: self.rate_changes + next.rate_changes,
+            spiked_s: self.spiked_s + next.spiked_s,
             velocities: self.velocities.zip(next.velocities).map(|(a, b)| Velocities { m: a.m + b.m, s: a.s + b.s }),
             ..*next
         }
@@ -118,6 +121,7 @@ impl Increments {
             disturbance: pair.disturbance.hypot(coning),
             rate_changes: change * change.transpose(),
             velocities,
+            spiked_s: if pair.flags.contains(Flags::SPIKE) { time_s } else { 0.0 },
         })
     }
 }

@@ -200,6 +200,11 @@ impl So3 {
         (self.theta, self.theta_rate)
     }
 
+    /// Density of the noise that drives the liveliest axis of the flexure, rad^2/s^3.
+    pub fn liveliest(&self) -> f64 {
+        self.flexure.iter().map(Flexure::density).fold(0.0, f64::max)
+    }
+
     /// How static part and flexure go on for `time_s` from now, by their models.
     pub fn ahead(&self, time_s: f64) -> Ahead {
         let mut turn = self.static_rate.column() * time_s;

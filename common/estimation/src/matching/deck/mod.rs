@@ -190,7 +190,14 @@ impl Deck {
 
     fn scene(&self, now: &Together) -> Scene {
         let (theta, theta_rate) = self.so3.flexed();
-        Scene { a_m: now.a_m, w_m: now.w_m.column(), theta, theta_rate, delay: self.delay }
+        Scene {
+            a_m: now.a_m,
+            w_m: now.w_m.column(),
+            theta,
+            theta_rate,
+            delay: self.delay,
+            liveliest: self.so3.liveliest(),
+        }
     }
 
     /// How the error of the deformation by the attitudes depends on the error state.

@@ -52,6 +52,8 @@ pub struct Velocity {
 #[derive(Clone, Copy, Debug, Default)]
 struct Since {
     time_s: f64,
+    /// With spikes, s.
+    spiked_s: f64,
     /// What the sub unit's accelerometers gained, m/s.
     gained: Vector3<f64>,
     /// How the velocity depends on the errors of constant, bias and scale of the gyros, bias and triad of the accelerometers.
@@ -74,6 +76,8 @@ pub struct Scene {
     pub theta_rate: Vector3<f64>,
     /// Rest of the delay, s.
     pub delay: f64,
+    /// Density of the noise that drives the flexure, rad^2/s^3.
+    pub liveliest: f64,
 }
 
 impl Velocity {
@@ -139,6 +143,7 @@ impl Velocity {
         self.sample_s = step.time_s;
         let since = &mut self.since;
         since.time_s += step.time_s;
+        since.spiked_s += step.spiked_s;
         since.gained += gained;
         since.by_gyro_bias -= force * by_gyro.0;
         since.by_gyro_scale -= force * by_gyro.1;
@@ -167,7 +172,9 @@ impl Velocity {
         put(place::ACCEL_BIAS, &since.by_bias);
         put(place::TRIAD, &since.by_triad);
         transition.fixed_view_mut::<3, 6>(place::VELOCITY, place::SCALE).copy_from(&since.by_gyro_scale);
-        let walk = self.lever.accel.vrw.powi(2) * since.time_s;
+        // where an increment was replaced, the lever arm's true movement in that sample is lost
+        let lost = scene.liveliest * since.spiked_s * self.arm.column().norm_squared();
+        let walk = self.lever.accel.vrw.powi(2) * since.time_s + lost;
         noise.fixed_view_mut::<3, 3>(place::VELOCITY, place::VELOCITY).fill_diagonal(walk);
     }
 

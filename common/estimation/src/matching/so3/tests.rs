@@ -32,6 +32,7 @@ fn increment(a_m: Rot<MainStart, Main>, a_s: Rot<SubStart, Sub>, dtheta_m: Vec3<
         disturbance: 0.0,
         rate_changes: Matrix3::zeros(),
         velocities: None,
+        spiked_s: 0.0,
     }
 }
 
