@@ -5,7 +5,7 @@ use super::surprise::Surprise;
 use crate::filter::{sequential, symmetrise};
 use crate::flexure::Flexure;
 use crate::matching::Matching;
-use crate::matching::deck::{Covariance, Deck, STATES};
+use crate::matching::deck::{Covariance, Deck, STATES, place};
 use crate::matching::increment::Increment;
 use frames::unit;
 use nalgebra::SMatrix;
@@ -86,12 +86,22 @@ impl Running {
             if self.chain_is_broken() {
                 self.start_epoch();
             }
-            let seen = self.deck.observe();
+            let mut seen = self.deck.observe();
+            let left_out = self.left_out();
+            (0..3).for_each(|axis| seen.noise[(axis, axis)] += left_out);
             let correction = sequential::update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
             self.deck.inject(&correction.error);
             self.surprise.take(correction.surprise);
         }
         self.is_sound()
+    }
+
+    /// Variance about each axis of what a matching that is linear in its errors leaves out, rad^2: flexure and static part's error do not commute.
+    /// With degrees of doubt that is many times the matching's own noise, and a filter that does not know it is lost in its first seconds.
+    fn left_out(&self) -> f64 {
+        let sum = |first: usize| self.p.diagonal().fixed_rows::<3>(first).sum();
+        let flexure = self.deck.so3().flexed().0.norm_squared() + sum(place::FLEXURE);
+        0.5 * flexure * sum(place::STATIC)
     }
 
     /// Forgets the constant: it is defined anew by what static part and flexure are believed to be.
