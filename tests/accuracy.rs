@@ -8,6 +8,7 @@ use nalgebra::{Matrix3, Vector3};
 use pipeline::configuration::{Configuration, IdentifierMethod};
 use pipeline::offline::{self, Sink};
 use pipeline::summary::deformation_error;
+use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 
 /// Errors count from here to the end, s.
@@ -17,7 +18,8 @@ const DURATION_S: f64 = 600.0;
 /// Errors of one run of the demo.
 #[derive(Default)]
 struct Errors {
-    truth: Option<Truth>,
+    /// Those to which no solution has come yet.
+    truths: VecDeque<Truth>,
     square: [f64; 3],
     count: f64,
     /// Normalised squared error of the last solution.
@@ -27,11 +29,14 @@ struct Errors {
 
 impl Sink for Errors {
     fn truth(&mut self, truth: &Truth) {
-        self.truth = Some(*truth);
+        self.truths.push_back(*truth);
     }
 
     fn solution(&mut self, solution: &Solution) {
-        let truth = self.truth.as_ref().filter(|truth| truth.header.sequence == solution.header.sequence).unwrap();
+        // a suspicious sample waits for the two after it
+        while self.truths.pop_front_if(|truth| truth.header.sequence < solution.header.sequence).is_some() {}
+        let truth = *self.truths.front().filter(|truth| truth.header.sequence == solution.header.sequence).unwrap();
+        let truth = &truth;
         if !solution.is_valid() || unit::seconds(solution.header.time_ns) < FROM_S {
             return;
         }

@@ -10,8 +10,8 @@ fn parse(key: &str) -> Result<Configuration, String> {
 }
 
 #[test]
-fn the_test_is_on_unless_it_is_switched_off() {
-    assert_eq!(parse("").unwrap().spike_threshold, 5.0);
+fn the_test_is_off_unless_it_is_switched_on() {
+    assert_eq!(parse("").unwrap().spike_threshold, 0.0);
     assert_eq!(parse("spike_threshold = 0").unwrap().spike_threshold, 0.0);
     assert_eq!(parse("spike_threshold = 8.5").unwrap().spike_threshold, 8.5);
 }

@@ -55,8 +55,12 @@ pub fn update<const N: usize, const K: usize>(
         }
         let variance = (row * cross)[0] + 1.0;
         let surprise = z[k] - (row * error)[0];
-        if !(variance.is_finite() && variance >= 1.0 && surprise.is_finite()) {
+        if !(variance.is_finite() && surprise.is_finite()) {
             return None;
+        }
+        // right after a state was defined by others the value is known, and what is left of its variance is rounding
+        if variance <= 1.0 {
+            continue;
         }
         if row.iter().any(|factor| *factor != 0.0) {
             squares += surprise * surprise / variance;
@@ -115,6 +119,17 @@ mod tests {
         let whole = f * covariance() * f.transpose();
         let carried = carried(&f, &covariance());
         assert!((carried - whole).norm() < 1e-12 && carried == carried.transpose());
+    }
+
+    #[test]
+    fn a_value_that_is_known_says_nothing() {
+        // the second state is minus the first, to the last bit or not
+        let tie = Matrix4::new(1.0, 0.0, 0.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+        let known = tie * covariance() * tie.transpose() - Matrix4::from_diagonal(&Vector4::new(1e-15, 0.0, 0.0, 0.0));
+        let mut p = known;
+        let h = SMatrix::<f64, 1, 4>::new(1.0, 1.0, 0.0, 0.0);
+        let found = update(&mut p, &nalgebra::Vector1::new(1e-17), &h, &nalgebra::Matrix1::new(1e-8)).expect("sound");
+        assert!(p == known && found.error == Vector4::zeros());
     }
 
     #[test]

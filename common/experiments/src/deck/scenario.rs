@@ -37,6 +37,9 @@ pub(super) struct Scenario {
     pub rivals: &'static [Rival],
 }
 
+/// Every scenario has the spike test, whether it has spikes or not.
+const SPIKE_THRESHOLD: f64 = 5.0;
+
 /// Of the ratio.
 const USUAL: (f64, f64) = (1.05, 1.15);
 /// The same where the data are not what the model says.
@@ -115,6 +118,7 @@ impl Scenario {
         Ok(Some(presets::configuration(self.preset, trial.seed)?.with(|c| {
             c.run.duration_s = Some(duration_s);
             c.areas[0].installation = None;
+            c.spike_threshold = SPIKE_THRESHOLD;
             (self.change)(c);
         })))
     }

@@ -45,7 +45,7 @@ pub struct Configuration {
     #[serde(default = "half", deserialize_with = "quantity::silence_s")]
     pub silence_s: f64,
     /// A value is a spike if it is off its neighbours by more than so many times the unit's own roughness; 0 for no test.
-    #[serde(default = "spikes::usual", deserialize_with = "spikes::threshold")]
+    #[serde(default, deserialize_with = "spikes::threshold")]
     pub spike_threshold: f64,
     /// The error figures of a summary leave out the first so many seconds.
     #[serde(default = "two_minutes", deserialize_with = "quantity::settle_s")]
