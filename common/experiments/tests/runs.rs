@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use experiments::{Data, Fault, Findings, Plan, Point, Study, Trials, Watch, presets, run, run_together};
+use frames::unit::seconds;
 use messages::{FlexureParams, Solution, Truth};
 use pipeline::configuration::Configuration;
 use pipeline::offline::{self, Sink};
@@ -46,7 +47,7 @@ fn a_track_has_the_bits_of_the_offline_loop() {
         assert!(track.points == reference.points, "seed {seed}");
         let adopted: Vec<FlexureParams> = track.adopted.iter().map(|adoption| adoption.set).collect();
         assert!(adopted.len() >= 4 && adopted == reference.sets[..adopted.len()], "seed {seed}");
-        let waits = track.adopted.iter().map(|a| a.time_s - a.set.effective_from_ns as f64 * 1e-9);
+        let waits = track.adopted.iter().map(|a| a.time_s - seconds(a.set.effective_from_ns));
         assert!(waits.into_iter().all(|wait| (0.0..0.011).contains(&wait)), "seed {seed}");
     }
 }
