@@ -76,8 +76,8 @@ pub struct Settings {
     pub method: Method,
     /// Whether the safety rule is applied to what the method finds; without it a filter gets the method's own numbers.
     pub safety: bool,
-    /// Whether the filter will run over the first minutes again with better parameters: then a shorter window may be believed, for what it gets
-    /// wrong is undone.
+    /// Whether the filter will run over the first minutes again with better parameters: then a short window may be believed where it shows an
+    /// oscillation, for what it gets wrong is undone.
     pub provisional: bool,
     /// Index of the area, copied into the parameters.
     pub area: u32,

@@ -77,11 +77,25 @@ pub fn departures(series: &Series, lasts: &[usize], settings: &Settings) -> Opti
     lasts.iter().map(departure).collect()
 }
 
+/// By how much better the series is fitted by any model than by one at critical damping of natural frequency `slow` (rad/s): twice the difference of the
+/// logarithms of the likelihoods, about chi-squared with two degrees of freedom if the flexure is that slow. What lies below a window's lowest frequency
+/// makes no difference; a model that is believed in spite of it would bound the flexure by what has not been seen. `None` if nothing can be fitted.
+pub fn against_slow(series: &Series, slow: f64) -> Option<f64> {
+    let settings = Settings { priors: false, ..Settings::of(series) };
+    let fit = Fit::new(series, &settings)?;
+    let (_, least) = fit.best()?;
+    let start = fit.start(slow, slow);
+    let (_, held) = Fit { held: true, ..fit }.climb(start)?;
+    Some(2.0 * (held - least))
+}
+
 struct Fit {
     data: Periodogram,
     kind: Kind,
     step_s: f64,
     settings: Settings,
+    /// Whether damping and frequency stay where they are.
+    held: bool,
 }
 
 fn flexure(logs: &Vector4<f64>) -> Flexure {
@@ -92,7 +106,7 @@ fn flexure(logs: &Vector4<f64>) -> Flexure {
 impl Fit {
     fn new(series: &Series, settings: &Settings) -> Option<Self> {
         let data = Periodogram::new(series, settings.taper, settings.band_hz)?;
-        Some(Self { data, kind: series.kind, step_s: series.step_s, settings: *settings })
+        Some(Self { data, kind: series.kind, step_s: series.step_s, settings: *settings, held: false })
     }
 
     /// The best logarithms from all starts, and their cost.
@@ -164,7 +178,13 @@ impl Fit {
             information[(0, 0)] += 1.0 / (PRIOR_SD * PRIOR_SD);
             information[(1, 1)] += 1.0 / (PRIOR_SD * PRIOR_SD);
         }
-        (downhill * self.data.weight - self.away(logs), information)
+        let mut downhill = downhill * self.data.weight - self.away(logs);
+        if self.held {
+            information.fixed_rows_mut::<2>(0).fill(0.0);
+            information.fixed_columns_mut::<2>(0).fill(0.0);
+            downhill.fixed_rows_mut::<2>(0).fill(0.0);
+        }
+        (downhill, information)
     }
 
     /// The logarithms at the end, and their cost.

@@ -50,13 +50,10 @@ impl Window {
         }
     }
 
-    /// Takes a pair; `true` when the window is due to be identified, the pair being its last point.
+    /// Takes a pair; `true` when the window is due to be identified, the pair being its last point. Points are the gyros' alone, so that
+    /// those from before the first valid solution count; only the last one needs a solution.
     pub fn take(&mut self, pair: &ImuPair, solution: &Solution) -> bool {
         if pair.header.sequence != solution.header.sequence {
-            return false;
-        }
-        if !solution.is_valid() || solution.epoch != pair.epoch {
-            self.restart();
             return false;
         }
         if (pair.flags | solution.flags).intersects(Flags::GAP | Flags::SILENT) {
@@ -81,7 +78,7 @@ impl Window {
         while self.points.front().is_some_and(|first| time_ns - first.time_ns > self.length_ns) {
             self.points.pop_front();
         }
-        self.due(time_ns)
+        solution.is_valid() && solution.epoch == pair.epoch && self.due(time_ns)
     }
 
     fn due(&mut self, time_ns: i64) -> bool {
@@ -125,7 +122,7 @@ impl Window {
         }
     }
 
-    /// How often points were thrown away because of a gap, a new epoch or run, or an invalid solution.
+    /// How often points were thrown away because of a gap or a new epoch or run.
     pub fn restarted(&self) -> u64 {
         self.restarted
     }

@@ -2,7 +2,7 @@ use super::Settings;
 use super::axis::Identified;
 use super::chain::{Anchor, Chain};
 use super::change::changed;
-use super::safety::safe;
+use super::safety::{is_not_slow, safe};
 use super::series::{Kind, Series};
 use super::window::Window;
 use crate::Identifier;
@@ -12,9 +12,6 @@ use messages::{FlexureParams, Header, ImuPair, Solution, Stamps};
 
 /// Windows up to this length are guarded against a worse constant, s.
 const GUARDED_S: f64 = 120.0;
-/// Longer windows are believed where a filter undoes what they get wrong, s. Believed from the first on, one of four starts on paper 000's ship by gyros
-/// alone was 13 deviations off; with a caution up to 120 s the first five minutes on paper 003's had 1.5 times the error.
-const PROVISIONAL_S: f64 = 75.0;
 /// By how much the variance may grow before a re-built window is thought to be worse.
 const TOLERATED: f64 = 1.05;
 
@@ -55,6 +52,19 @@ impl Windowed {
         let [x, y, z] = &chain.rates;
         Some([solver.solve(&series(x))?, solver.solve(&series(y))?, solver.solve(&series(z))?])
     }
+
+    /// What a filter gets.
+    fn models(&self, axes: &[Identified; 3], chain: &Chain) -> [Flexure; 3] {
+        let model = |(axis, values): (&Identified, &Vec<f64>)| {
+            let series = Series { kind: Kind::Rates, values, step_s: chain.step_s };
+            let believed = self.settings.provisional && is_not_slow(&series);
+            match self.settings.safety {
+                true => safe(axis, if believed { f64::INFINITY } else { self.window.length_s() }),
+                false => axis.flexure,
+            }
+        };
+        [0, 1, 2].map(|i| model((&axes[i], &chain.rates[i])))
+    }
 }
 
 impl Identifier for Windowed {
@@ -78,13 +88,7 @@ impl Identifier for Windowed {
         }
         self.kept = Some(chain.end);
         let axes = self.identify(&chain)?;
-        let length_s = self.window.length_s();
-        let believed = self.settings.provisional && length_s > PROVISIONAL_S;
-        let length_s = if believed { f64::INFINITY } else { length_s };
-        let models: [Flexure; 3] = match self.settings.safety {
-            true => axes.map(|axis| safe(&axis, length_s)),
-            false => axes.map(|axis| axis.flexure),
-        };
+        let models = self.models(&axes, &chain);
         if !models.iter().all(Flexure::is_sound) {
             return None;
         }
