@@ -1,29 +1,48 @@
 //! Whether the flexure has become another one: the sea, the speed, the loading.
 //!
-//! The last minutes of a window are fitted by a model of their own. While nothing changes, that fits them better than the window's model by about one in
-//! the posterior's logarithm a parameter; where it fits far better, what came before speaks of another hull, and the window is cut.
+//! The last minutes of a window are fitted by a model of their own. While nothing changes, that fits them better than the model of what came before by about
+//! one in the posterior's logarithm a parameter; where it fits far better, what came before speaks of another hull, and the window is cut.
+//!
+//! A sea that slams is never the same for two minutes, though the hull is. So a part must differ far more than the parts before it differ from each other.
 
 use super::series::{Kind, Series};
-use super::whittle::{self, Settings};
+use super::whittle::{departure, fitted};
 
 /// The lengths that are looked at, s.
-const LENGTHS_S: [f64; 4] = [60.0, 90.0, 120.0, 180.0];
-/// A window must be so many times as long as what is looked at.
-const LONGER: f64 = 2.0;
-/// The sum over the axes that says so; 12 is expected with a deviation of 5, and a window is looked at some hundred times an hour.
+const LENGTHS_S: [f64; 3] = [60.0, 90.0, 120.0];
+/// A window must be so many times as long as what is looked at: the last is the part in question, the others show what is usual.
+const PARTS: usize = 5;
+/// By how much a part departs from another model while nothing changes, summed over the axes: four parameters each.
+const EXPECTED: f64 = 12.0;
+/// What says that the flexure has changed where the parts before depart as expected; it grows with the square of what is usual. A window is looked at some
+/// hundred times an hour.
 const DECISIVE: f64 = 50.0;
 
 /// So much of the end of a window, whose rates (rad/s, `step_s` apart, an axis of m each) are given, is of another flexure, s; `None` if all of it is of the same.
 pub fn changed(rates: &[Vec<f64>; 3], step_s: f64) -> Option<f64> {
-    let length_s = rates[0].len() as f64 * step_s;
-    let lengths: Vec<f64> = LENGTHS_S.into_iter().filter(|part_s| part_s * LONGER <= length_s).collect();
-    let lasts: Vec<usize> = lengths.iter().map(|part_s| (part_s / step_s) as usize).collect();
-    let mut sums = vec![0.0; lasts.len()];
-    for values in rates {
-        let series = Series { kind: Kind::Rates, values, step_s };
-        let departures = whittle::departures(&series, &lasts, &Settings::of(&series))?;
-        sums.iter_mut().zip(departures).for_each(|(sum, departure)| *sum += departure);
+    let mut best = None;
+    for length_s in LENGTHS_S {
+        let count = (length_s / step_s) as usize;
+        if count * PARTS > rates[0].len() {
+            break;
+        }
+        let (mut last, mut before) = (0.0, 0.0);
+        for values in rates {
+            let departures = departures(values, count, step_s)?;
+            last += departures[0];
+            before += departures[1..].iter().sum::<f64>() / (departures.len() - 1) as f64;
+        }
+        let evidence = last / (before / EXPECTED).max(1.0).powi(2);
+        if evidence > best.map_or(DECISIVE, |(evidence, _)| evidence) {
+            best = Some((evidence, length_s));
+        }
     }
-    let (place, largest) = sums.iter().enumerate().max_by(|one, other| one.1.total_cmp(other.1))?;
-    (*largest > DECISIVE).then(|| lengths[place])
+    best.map(|(_, length_s)| length_s)
+}
+
+/// How far parts of `count` rates about an axis depart from the model of all but the last part, the last part first.
+fn departures(values: &[f64], count: usize, step_s: f64) -> Option<Vec<f64>> {
+    let series = |values| Series { kind: Kind::Rates, values, step_s };
+    let usual = fitted(&series(&values[..values.len() - count]))?;
+    values.rchunks_exact(count).map(|part| departure(&series(part), &usual)).collect()
 }

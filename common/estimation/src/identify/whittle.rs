@@ -64,17 +64,21 @@ pub fn identify(series: &Series, settings: &Settings) -> Option<Identified> {
     Identified::new(flexure(&logs), &covariance, series.length_s()).filter(|found| found.flexure.is_sound())
 }
 
-/// By how much better a model of its own fits the last values of a series than the series' model, for so many last values each: twice the difference of
-/// the logarithms of the posterior densities, about chi-squared with four degrees of freedom while nothing changes. `None` where a part cannot be fitted.
-pub fn departures(series: &Series, lasts: &[usize], settings: &Settings) -> Option<Vec<f64>> {
-    let (whole, _) = Fit::new(series, settings)?.best()?;
-    let departure = |&last: &usize| {
-        let values = series.values.get(series.values.len().checked_sub(last)?..)?;
-        let fit = Fit::new(&Series { values, ..*series }, settings)?;
-        let (_, least) = fit.best()?;
-        Some(2.0 * (fit.cost(&whole) - least))
-    };
-    lasts.iter().map(departure).collect()
+/// A model that was fitted to a series.
+#[derive(Clone, Copy, Debug)]
+pub struct Fitted(Vector4<f64>);
+
+/// The most probable model of a series; `None` if the band is empty or nothing converges.
+pub fn fitted(series: &Series) -> Option<Fitted> {
+    Fit::new(series, &Settings::of(series))?.best().map(|(logs, _)| Fitted(logs))
+}
+
+/// By how much better a model of its own fits a series than another series' model: twice the difference of the logarithms of the posterior densities,
+/// about chi-squared with four degrees of freedom if it is the same flexure and the other series much longer. `None` if nothing can be fitted.
+pub fn departure(series: &Series, other: &Fitted) -> Option<f64> {
+    let fit = Fit::new(series, &Settings::of(series))?;
+    let (_, least) = fit.best()?;
+    Some(2.0 * (fit.cost(&other.0) - least))
 }
 
 /// By how much better the series is fitted by any model than by one at critical damping of natural frequency `slow` (rad/s): twice the difference of the
