@@ -23,12 +23,14 @@ const CENTRE: usize = ROWS - 1 - AHEAD;
 const SUSPICIOUS: f64 = 4.0;
 /// A spike is off the line of its past and off that of its future by at least so much of the excess.
 const OFF: f64 = 0.25;
-/// The lines of past and future may differ by so much of the excess on either side, or it is a step.
+/// The lines of past and future may differ by so much of the excess on either side, and what lasts may be so much of it, or it is a step: of one that
+/// falls into the sample the excess is at most half.
 const STEP: f64 = 2.0 / 3.0;
 /// After a spike the next value lies on the line of the past within so many standard deviations; after a step it does not.
 const RETURN: f64 = 3.0;
-/// A velocity excess is real if a step of the gyros acting on the lever arm explains more than this share of it.
-const EXPLAINED: f64 = 0.2;
+/// A velocity excess is real if a step of the gyros acting on the lever arm explains more than this share of it. With a fifth one spike of a thousand
+/// deviations in fifty passed for real, by the chance of a gyro's three deviations.
+const EXPLAINED: f64 = 0.5;
 /// Nominal length of a block, s, and the least and largest number of its samples.
 const BLOCK_S: f64 = 5.0;
 const BLOCK: (u64, u64) = (256, 512);
@@ -264,7 +266,7 @@ impl Taps {
 
     /// Whether those after go on where those before left off.
     fn returns(self, found: &Found, scale: Scale) -> bool {
-        self.lasting_step(scale) == 0.0 && self.step().abs() <= 2.0 * STEP * found.excess.abs()
+        self.lasting_step(scale) <= STEP * found.excess.abs() && self.step().abs() <= 2.0 * STEP * found.excess.abs()
     }
 
     /// By how much the next two values are both off the line of the past, beyond noise; a spike of one of them is no step.
