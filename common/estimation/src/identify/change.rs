@@ -6,7 +6,7 @@
 //! A sea that slams is never the same for two minutes, though the hull is. So a part must differ far more than the parts before it differ from each other.
 
 use super::series::{Kind, Series};
-use super::whittle::{departure, fitted};
+use super::whittle::{Fitted, departure, fitted};
 
 /// The lengths that are looked at, s.
 const LENGTHS_S: [f64; 3] = [60.0, 90.0, 120.0];
@@ -18,21 +18,24 @@ const EXPECTED: f64 = 12.0;
 /// hundred times an hour.
 const DECISIVE: f64 = 50.0;
 
+/// A part that departs from the whole window's model by less is not looked at more closely.
+const SUSPICIOUS: f64 = 25.0;
+
 /// So much of the end of a window, whose rates (rad/s, `step_s` apart, an axis of m each) are given, is of another flexure, s; `None` if all of it is of the same.
 pub fn changed(rates: &[Vec<f64>; 3], step_s: f64) -> Option<f64> {
+    let axes = rates.each_ref().map(|values| Axis { values, step_s });
+    let lengths = LENGTHS_S.map(|length_s| (length_s, (length_s / step_s) as usize));
+    let mut lengths = lengths.into_iter().filter(|(_, count)| count * PARTS <= rates[0].len()).peekable();
+    lengths.peek()?;
+    let [x, y, z] = axes.each_ref().map(|axis| fitted(&axis.series(axis.values)));
+    let whole = [x?, y?, z?];
     let mut best = None;
-    for length_s in LENGTHS_S {
-        let count = (length_s / step_s) as usize;
-        if count * PARTS > rates[0].len() {
-            break;
+    for (length_s, count) in lengths {
+        let mut departures = axes.iter().zip(&whole).map(|(axis, whole)| axis.last(count, whole));
+        if departures.try_fold(0.0, |sum, departure| Some(sum + departure?))? < SUSPICIOUS {
+            continue;
         }
-        let (mut last, mut before) = (0.0, 0.0);
-        for values in rates {
-            let departures = departures(values, count, step_s)?;
-            last += departures[0];
-            before += departures[1..].iter().sum::<f64>() / (departures.len() - 1) as f64;
-        }
-        let evidence = last / (before / EXPECTED).max(1.0).powi(2);
+        let evidence = evidence(&axes, count)?;
         if evidence > best.map_or(DECISIVE, |(evidence, _)| evidence) {
             best = Some((evidence, length_s));
         }
@@ -40,9 +43,36 @@ pub fn changed(rates: &[Vec<f64>; 3], step_s: f64) -> Option<f64> {
     best.map(|(_, length_s)| length_s)
 }
 
-/// How far parts of `count` rates about an axis depart from the model of all but the last part, the last part first.
-fn departures(values: &[f64], count: usize, step_s: f64) -> Option<Vec<f64>> {
-    let series = |values| Series { kind: Kind::Rates, values, step_s };
-    let usual = fitted(&series(&values[..values.len() - count]))?;
-    values.rchunks_exact(count).map(|part| departure(&series(part), &usual)).collect()
+/// By how much the last part departs from the model of what came before, in terms of what the parts before do.
+fn evidence(axes: &[Axis; 3], count: usize) -> Option<f64> {
+    let (mut last, mut before) = (0.0, 0.0);
+    for axis in axes {
+        let departures = axis.departures(count)?;
+        last += departures[0];
+        before += departures[1..].iter().sum::<f64>() / (departures.len() - 1) as f64;
+    }
+    Some(last / (before / EXPECTED).max(1.0).powi(2))
+}
+
+/// The rates about one axis.
+struct Axis<'a> {
+    values: &'a [f64],
+    step_s: f64,
+}
+
+impl Axis<'_> {
+    fn series<'b>(&self, values: &'b [f64]) -> Series<'b> {
+        Series { kind: Kind::Rates, values, step_s: self.step_s }
+    }
+
+    /// How far the last `count` rates depart from a model.
+    fn last(&self, count: usize, model: &Fitted) -> Option<f64> {
+        departure(&self.series(&self.values[self.values.len() - count..]), model)
+    }
+
+    /// How far parts of `count` rates depart from the model of all but the last part, the last part first.
+    fn departures(&self, count: usize) -> Option<Vec<f64>> {
+        let usual = fitted(&self.series(&self.values[..self.values.len() - count]))?;
+        self.values.rchunks_exact(count).map(|part| departure(&self.series(part), &usual)).collect()
+    }
 }

@@ -4,6 +4,7 @@
 //! told the true flexure: what separates the two is what identification costs. The error of a run is nearly one constant vector, so
 //! that figures of a method alone scatter widely, while the ratio of both on the same data does not.
 
+mod ablation;
 mod claims;
 mod honesty;
 mod matrix;
@@ -26,6 +27,7 @@ pub(crate) fn studies() -> Vec<Study> {
     let mut studies: Vec<Study> = SCENARIOS.iter().map(study).collect();
     studies.push(spikes::study());
     studies.extend(unseen::studies());
+    studies.extend(ablation::studies());
     studies
 }
 
