@@ -5,6 +5,7 @@
 //! that figures of a method alone scatter widely, while the ratio of both on the same data does not.
 
 mod claims;
+mod coupled;
 mod honesty;
 mod matrix;
 mod measure;
@@ -26,6 +27,7 @@ pub(crate) fn studies() -> Vec<Study> {
     let mut studies: Vec<Study> = SCENARIOS.iter().map(study).collect();
     studies.push(spikes::study());
     studies.extend(unseen::studies());
+    studies.extend(coupled::studies());
     studies
 }
 
