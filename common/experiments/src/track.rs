@@ -38,8 +38,10 @@ pub struct Point {
     pub range: [f64; 3],
     /// The same error of the static part.
     pub static_error: [f64; 3],
-    /// The same error of the dynamic part.
+    /// Rotation vector of the dynamic part less the true one.
     pub dynamic_error: [f64; 3],
+    /// The method's standard deviation of that error per axis.
+    pub dynamic_sigma: [f64; 3],
     /// The delay by now, if the method estimates one.
     pub delay: Option<Estimated>,
     /// By how much the delay grows in a second, if the method estimates it.
@@ -53,7 +55,6 @@ impl Point {
     pub fn of(solution: &Solution, truth: &Truth) -> Self {
         let total = Rot::<Main, Sub>::from_wxyz(truth.q).log();
         let [found, real] = [solution.static_q, truth.static_q].map(Rot::<Main, Sub>::from_wxyz);
-        let [bent, really_bent] = [solution.dynamic, truth.dynamic].map(|v| Rot::<Main, Main>::exp(Vec3::from(v)));
         Self {
             time_s: unit::seconds(solution.header.time_ns),
             valid: solution.is_valid(),
@@ -63,7 +64,8 @@ impl Point {
             covariance: solution.covariance,
             range: solution.range,
             static_error: (found * real.inverse()).log().array(),
-            dynamic_error: (bent * really_bent.inverse()).log().array(),
+            dynamic_error: [0, 1, 2].map(|axis| solution.dynamic[axis] - truth.dynamic[axis]),
+            dynamic_sigma: deviations(&solution.dynamic_covariance),
             delay: estimated(solution.delay, solution.delay_sigma),
             skew: estimated(solution.skew, solution.skew_sigma),
             flags: solution.flags,
@@ -182,7 +184,7 @@ impl<'a> Stretch<'a> {
 
     /// Mean error.
     pub fn mean_error(&self) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.mean(|point| point.error[axis]))
+        self.mean_of(|point| point.error)
     }
 
     /// Mean absolute error.
@@ -200,9 +202,19 @@ impl<'a> Stretch<'a> {
         self.rms_of(Point::sigma)
     }
 
+    /// Mean of anything, such as `|point| point.range`.
+    pub fn mean_of(&self, figure: impl Fn(&Point) -> [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.mean(|point| figure(point)[axis]))
+    }
+
     /// Share of points whose error lies within a half width, such as `|point| point.range`.
     pub fn coverage(&self, half_width: impl Fn(&Point) -> [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|axis| self.mean(|point| f64::from(point.error[axis].abs() <= half_width(point)[axis])))
+        self.held(|point| point.error, half_width)
+    }
+
+    /// Share of points of which something, such as `|point| point.dynamic_error`, lies within a half width.
+    pub fn held(&self, error: impl Fn(&Point) -> [f64; 3], half_width: impl Fn(&Point) -> [f64; 3]) -> [f64; 3] {
+        [0, 1, 2].map(|axis| self.mean(|point| f64::from(error(point)[axis].abs() <= half_width(point)[axis])))
     }
 
     /// Mean of [`Point::nees`]: 3 for an honest method.
@@ -227,8 +239,10 @@ mod tests {
             let covariance = [4e-6, 0.0, 0.0, 0.0, 4e-6, 0.0, 0.0, 0.0, 4e-6];
             let valid = u32::from(sequence < 80);
             let range = [1e-2, 0.0, 2.5e-3];
+            let (dynamic, dynamic_covariance) = ([3e-3, 0.0, second * 1e-3], covariance);
             let solution = Solution { header, q: found.quaternion(), covariance, valid, range, ..Solution::default() };
-            let truth = Truth { header, q: real.quaternion(), ..Truth::default() };
+            let solution = Solution { dynamic, dynamic_covariance, ..solution };
+            let truth = Truth { header, q: real.quaternion(), dynamic: [0.0, 1e-3, 0.0], ..Truth::default() };
             track.take(&solution, &truth);
         }
         track
@@ -245,6 +259,9 @@ mod tests {
         assert!(near(some.max_abs()[2], 2e-3) && near(some.sigma()[1], 2e-3));
         assert!((some.nees() - (0.25 + 2.5 / 4.0)).abs() < 1e-9);
         assert_eq!(track.over(..4.0).coverage(|point| point.range)[2], 0.75);
+        let wide = |point: &Point| point.dynamic_sigma.map(|sigma| 1.25 * sigma);
+        assert_eq!(track.over(..4.0).held(|point| point.dynamic_error, wide), [0.0, 1.0, 0.75]);
+        assert!(near(some.mean_of(wide)[1], 2.5e-3) && near(some.mean_of(|point| point.range)[0], 1e-2));
         assert_eq!(track.over(6.0..10.0).valid_share(), 0.5);
         assert!(near(track.over(6.0..=10.0).rmse()[2], 1e-3 * 42.5f64.sqrt()));
         assert!(track.over(9.0..).rmse()[2].is_nan() && track.over(20.0..).points.is_empty());

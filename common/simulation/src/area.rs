@@ -126,18 +126,41 @@ pub struct Impulses {
 /// Flexure in step with the ship's swing s = (pitch, roll, -heading sway), which is the wave part of the integral of `w_im_m`;
 /// turns of the course are no part of it. 004 section 3.
 ///
-/// `theta_c = -[e x] s + (1 + a) (cos p u + sin p v)`, with `u = K1 s + K2 s90`, `v = K1 s90 - K2 s`; s90 is s a quarter of a
-/// period late. K1 and K2 are drawn once a run: each axis of `u` has the standard deviation `share * sigma` of the first
-/// flexure model of that axis, shared at random among the six products with s and s90 scaled to one deviation. The gain's
-/// a and the phase's p (rad) are slow critically damped Gauss-Markov processes of each axis of `theta_c`.
+/// `theta_c = -[e x] s` and the hull's [`Response`] to s, whose gains are drawn once a run: each axis has the standard deviation
+/// `share * sigma` of the first flexure model of that axis, shared at random among the products that the response names,
+/// scaled to one deviation as if they were independent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coupling {
     /// Standard deviation of the coherent flexure over that of the model.
     pub share: f64,
-    /// Standard deviation of a and p.
-    pub wander: f64,
-    /// Time after which their autocovariance has fallen to 1/e, s; positive unless wander is 0.
-    pub wander_tau: f64,
+    /// How the flexure follows the swing.
+    pub response: Response,
     /// e, rad: to the gyros the same as a static rotation by e.
     pub in_phase_rotation: Vec3<Main>,
+}
+
+/// How a hull follows the swing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Response {
+    /// `(1 + a) (cos p u + sin p v)`, with `u = K1 s + K2 s90`, `v = K1 s90 - K2 s`; s90 is s a quarter of a period late.
+    /// The gain's a and the phase's p (rad) are slow critically damped Gauss-Markov processes of each axis.
+    Phase {
+        /// Standard deviation of a and p.
+        wander: f64,
+        /// Time after which their autocovariance has fallen to 1/e, s; positive unless wander is 0.
+        wander_tau: f64,
+    },
+    /// `K s(t - delay)`: the same lag at every frequency. Before t = 0 the swing goes on as a straight line.
+    Delayed {
+        /// s, from 0 on; a few seconds at most, for the sake of that line.
+        delay_s: f64,
+    },
+    /// `K y`, `y'' + 2 mu y' + b^2 y = b^2 s`. At the start y has its stationary deviations, drawn apart from the swing's:
+    /// what is wrong with that dies away as `exp(-mu t)`.
+    Resonant {
+        /// Damping, 1/s; positive and less than b.
+        mu: f64,
+        /// Natural frequency, rad/s.
+        b: f64,
+    },
 }

@@ -57,9 +57,9 @@ impl Hull {
         }
         let mut changes = area.flexure_changes.clone();
         changes.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
-        let coherence = area.coupling.map(|coupling| {
-            Coherence::new(&coupling, area, sea.swing_rms(), Source::new(seed, Purpose::Coupling, index))
-        });
+        let coherence = area
+            .coupling
+            .map(|coupling| Coherence::new(&coupling, area, sea, time_ns, Source::new(seed, Purpose::Coupling, index)));
         let mut hull = Self {
             lever_arm: area.lever_arm,
             gain: area.dynamic_lever_arm,
@@ -109,8 +109,8 @@ impl Hull {
     fn bend(&mut self, sea: &Sea, time_ns: i64) {
         self.now.theta = self.flexure.state().map(|[angle, _]| angle).into();
         self.now.rate = self.flexure.state().map(|[_, rate]| rate).into();
-        if let Some(coherence) = &self.coherence {
-            let [angle, rate] = coherence.bend(&sea.swing(seconds(time_ns)));
+        if let Some(coherence) = &mut self.coherence {
+            let [angle, rate] = coherence.bend(sea, time_ns);
             self.now.theta += angle;
             self.now.rate += rate;
         }

@@ -6,6 +6,7 @@
 
 use crate::process::Process;
 use crate::random::Source;
+use crate::resonator::Resonance;
 use crate::{RandomSwing, Tones};
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
@@ -101,6 +102,16 @@ impl Knots {
     /// Standard deviation of the angle, rad.
     pub(crate) fn rms(&self) -> f64 {
         self.rms
+    }
+
+    /// Standard deviations of angle and rate (rad, rad/s) of what a resonance makes of the angle.
+    pub(crate) fn resonant_rms(&self, resonance: &Resonance) -> [f64; 2] {
+        match &self.generator {
+            Generator::Tones { w_and_phase, .. } => {
+                resonance.of_lines(self.rms, w_and_phase.iter().map(|tone| tone[0]))
+            }
+            Generator::Process(process) => resonance.of_process(process.swing()),
+        }
     }
 }
 

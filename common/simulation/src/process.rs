@@ -21,7 +21,7 @@ pub(crate) struct Process {
     state: SVector<f64, 7>,
     /// The states that are the angle and its rate.
     output: [usize; 2],
-    b: f64,
+    swing: RandomSwing,
     rms: f64,
     source: Source,
 }
@@ -33,12 +33,17 @@ impl Process {
         let stationary = sum_of_all(&transition, &covariance);
         let state = root(&stationary) * SVector::from_fn(|_, _| source.normal());
         let rms = stationary[(output[0], output[0])].max(0.0).sqrt();
-        Self { transition, noise: root(&covariance), state, output, b: swing.b, rms, source }
+        Self { transition, noise: root(&covariance), state, output, swing: *swing, rms, source }
     }
 
     /// Standard deviation of the angle, rad.
     pub(crate) fn rms(&self) -> f64 {
         self.rms
+    }
+
+    /// The model.
+    pub(crate) fn swing(&self) -> &RandomSwing {
+        &self.swing
     }
 
     /// The next knot; the first one is the stationary state.
@@ -47,8 +52,15 @@ impl Process {
         let lag = self.state[6];
         let normals = SVector::from_fn(|_, _| self.source.normal());
         self.state = self.transition * self.state + self.noise * normals;
-        [[angle, rate], [2.0 * lag - angle, 2.0 * self.b * (angle - lag) - rate]]
+        [[angle, rate], [2.0 * lag - angle, 2.0 * self.swing.b * (angle - lag) - rate]]
     }
+}
+
+/// Density of the angle (rad^2 s) at a frequency w of either sign: its integral over `dw / 2 pi` is the variance.
+pub(crate) fn spectrum(swing: &RandomSwing, w: f64) -> f64 {
+    let limit = swing.band_limit_hz.map_or(1.0, |hz| 1.0 / (1.0 + (w / (TAU * hz)).powi(8)));
+    let (b2, w2) = (swing.b * swing.b, w * w);
+    density(swing) * limit / ((b2 - w2).powi(2) + 4.0 * swing.mu * swing.mu * w2)
 }
 
 fn density(swing: &RandomSwing) -> f64 {

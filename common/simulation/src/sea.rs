@@ -1,7 +1,7 @@
 //! Motion of the ship: 000 eq 79 and the sphere that turns below it.
 
 use crate::Ship;
-use crate::coupling::SwingVector;
+use crate::resonator::Resonance;
 use crate::swing::Track;
 use frames::unit::seconds;
 use frames::{Euler, Inertial, Main, Nav, Rot, Vec3};
@@ -64,19 +64,35 @@ impl Sea {
         }
     }
 
-    /// The swing without turns, for what bends with it.
-    pub(crate) fn swing(&self, t: f64) -> SwingVector {
-        let tracks = [(&self.pitch, 1.0), (&self.roll, 1.0), (&self.heading, -1.0)];
-        let signed = |(angle, rate): (f64, f64), sign: f64| [sign * angle, sign * rate];
-        SwingVector {
-            swing: tracks.map(|(track, sign)| signed(track.at(t), sign)),
-            late: tracks.map(|(track, sign)| signed(track.late(t), sign)),
-        }
+    /// The swing (pitch, roll, -heading sway) without turns, for what bends with it: angle and rate of each, rad and rad/s.
+    pub(crate) fn swing(&self, t: f64) -> [[f64; 2]; 3] {
+        self.signed(|track| track.at(t))
+    }
+
+    /// The same a quarter of a period late.
+    pub(crate) fn late(&self, t: f64) -> [[f64; 2]; 3] {
+        self.signed(|track| track.late(t))
+    }
+
+    fn signed(&self, of: impl Fn(&Track) -> (f64, f64)) -> [[f64; 2]; 3] {
+        self.swings().map(|(track, sign)| {
+            let (angle, rate) = of(track);
+            [sign * angle, sign * rate]
+        })
+    }
+
+    fn swings(&self) -> [(&Track, f64); 3] {
+        [(&self.pitch, 1.0), (&self.roll, 1.0), (&self.heading, -1.0)]
     }
 
     /// Standard deviation of each component of the swing, rad.
     pub(crate) fn swing_rms(&self) -> [f64; 3] {
-        [self.pitch.rms(), self.roll.rms(), self.heading.rms()]
+        self.swings().map(|(track, _)| track.rms())
+    }
+
+    /// Standard deviations of angle and rate (rad, rad/s) of what a resonance makes of each component.
+    pub(crate) fn resonant_rms(&self, resonance: &Resonance) -> [[f64; 2]; 3] {
+        self.swings().map(|(track, _)| track.resonant_rms(resonance))
     }
 
     /// Course (rad) and rate of turn (rad/s).

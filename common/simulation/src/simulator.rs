@@ -3,7 +3,7 @@ use crate::imu::Imu;
 use crate::random::{Purpose, Source};
 use crate::sampling::{NEVER, Sampling};
 use crate::sea::{Motion, Sea, increments};
-use crate::{InsErrors, Scenario};
+use crate::{Area, InsErrors, Response, Scenario};
 use frames::unit::{nanoseconds, seconds};
 use frames::{Main, Nav, Rot, Vec3};
 use messages::{ClockDomain, Header, ImuSample, MainAttitude, Truth};
@@ -97,11 +97,15 @@ impl Simulator {
     }
 }
 
-/// How far back a sample can reach: a unit's slowest period before one of the main unit's.
+/// How far back a sample can reach: a unit's slowest period before one of the main unit's, and the lag of the flexure before that.
 fn history_s(scenario: &Scenario) -> f64 {
     let slowest = scenario.areas.iter().map(|area| 1.0 + area.wire.rate_error).fold(1.0, f64::min);
     let period = 1.0 / scenario.rate_hz;
-    period + period / slowest.max(1e-6)
+    let lag = |area: &Area| match area.coupling.map(|coupling| coupling.response) {
+        Some(Response::Delayed { delay_s }) => delay_s,
+        _ => 0.0,
+    };
+    period + period / slowest.max(1e-6) + scenario.areas.iter().map(lag).fold(0.0, f64::max)
 }
 
 /// The main INS with the errors that this run gave it.

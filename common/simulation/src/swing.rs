@@ -2,6 +2,7 @@
 
 use crate::knots::Knots;
 use crate::random::{Purpose, Source};
+use crate::resonator::Resonance;
 use crate::{Oscillation, Swing};
 use std::f64::consts::TAU;
 
@@ -63,6 +64,14 @@ impl Track {
             Self::Sine { amplitude, w, .. } if *w > 0.0 => amplitude.abs() / 2f64.sqrt(),
             Self::Sine { .. } => 0.0,
             Self::Knots(knots) => knots.rms(),
+        }
+    }
+
+    /// Standard deviations of angle and rate (rad, rad/s) of what a resonance makes of the angle.
+    pub(crate) fn resonant_rms(&self, resonance: &Resonance) -> [f64; 2] {
+        match self {
+            Self::Sine { w, .. } => resonance.of_lines(self.rms(), [*w].into_iter()),
+            Self::Knots(knots) => knots.resonant_rms(resonance),
         }
     }
 }

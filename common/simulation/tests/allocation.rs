@@ -37,13 +37,18 @@ fn a_warm_step_allocates_nothing() {
         ..Wire::default()
     };
     let in_phase_rotation = frames::Vec3::new(1e-4, 0.0, 0.0);
-    let coupled = Area {
-        coupling: Some(Coupling { share: 0.1, wander: 0.35, wander_tau: 9000.0, in_phase_rotation }),
+    let coupled = |response| Area {
+        coupling: Some(Coupling { share: 0.1, response, in_phase_rotation }),
         impulses: Some(Impulses { factor: 50.0, probability: 5e-3, cell_s: 0.01 }),
         quasi_static: QuasiStatic { amplitude: [1e-3; 3], period: 7200.0, phase: [0.0; 3] },
         ..Area::default()
     };
-    let areas = vec![Area { wire, ..Area::default() }, coupled];
+    let responses = [
+        Response::Phase { wander: 0.35, wander_tau: 9000.0 },
+        Response::Delayed { delay_s: 1.5 },
+        Response::Resonant { mu: 0.1, b: 1.5 },
+    ];
+    let areas = std::iter::once(Area { wire, ..Area::default() }).chain(responses.map(coupled)).collect();
     let roll = Swing::Random(RandomSwing { mu: 0.06, b: 0.44, sigma: 0.06, band_limit_hz: Some(0.4) });
     let pitch = Swing::Tones(Tones { rms: 0.05, period: 8.0, count: 24 });
     let ship = Ship { roll, pitch, ..Ship::default() };

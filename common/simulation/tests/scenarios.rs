@@ -11,6 +11,9 @@ const SHIP_003: [RandomSwing; 3] = [
     RandomSwing { mu: 0.12, b: 0.336_3, sigma: 0.8 * DEGREE, band_limit_hz: Some(0.4) },
 ];
 
+/// No gain and no phase wanders.
+const FIXED: Response = Response::Phase { wander: 0.0, wander_tau: 0.0 };
+
 fn quiet() -> Scenario {
     let area = Area { unit: Unit::ideal(), ..Area::default() };
     let ins = InsErrors { attitude: [0.0; 3], noise: 0.0 };
@@ -38,7 +41,8 @@ fn rich(seed: u64) -> Scenario {
         vec![FlexureChange { at_s: 33.337, flexure }, FlexureChange { at_s: 70.0, flexure: [flexure[1]; 3] }];
     area.impulses = Some(Impulses { factor: 50.0, probability: 5e-4, cell_s: 0.01 });
     let in_phase_rotation = Vec3::new(30.0, -20.0, 50.0) * ARCSEC;
-    area.coupling = Some(Coupling { share: 0.5, wander: 0.35, wander_tau: 100.0, in_phase_rotation });
+    area.coupling =
+        Some(Coupling { share: 0.5, response: Response::Phase { wander: 0.35, wander_tau: 100.0 }, in_phase_rotation });
     scenario
 }
 
@@ -265,7 +269,7 @@ fn coherent_flexure_has_its_share_and_follows_the_swing() {
         scenario.areas[0].flexure = [GaussMarkov { mu: 1e-9, b: 1e-9, sigma }; 3];
         scenario.areas[0].starts_at_rest = true;
         let none = Vec3::ZERO;
-        scenario.areas[0].coupling = Some(Coupling { share, wander: 0.0, wander_tau: 0.0, in_phase_rotation: none });
+        scenario.areas[0].coupling = Some(Coupling { share, response: FIXED, in_phase_rotation: none });
         let mut simulator = Simulator::new(&scenario);
         let (mut power, n) = ([0.0; 3], 100_000.0);
         for _ in 0..100_000 {
@@ -284,7 +288,7 @@ fn an_in_phase_rotation_looks_like_a_static_one() {
     let mut scenario = random_ship(3);
     let e = Vec3::<Main>::new(30.0, -20.0, 50.0) * ARCSEC;
     scenario.areas[0].flexure = [GaussMarkov { mu: 0.1, b: 0.4, sigma: 0.0 }; 3];
-    scenario.areas[0].coupling = Some(Coupling { share: 0.0, wander: 0.0, wander_tau: 0.0, in_phase_rotation: e });
+    scenario.areas[0].coupling = Some(Coupling { share: 0.0, response: FIXED, in_phase_rotation: e });
     let mut simulator = Simulator::new(&scenario);
     let (mut last, mut found, mut normal) = (None, nalgebra::Vector3::zeros(), nalgebra::Matrix3::zeros());
     for _ in 0..40_000 {

@@ -6,6 +6,7 @@
 
 mod ablation;
 mod claims;
+mod coupled;
 mod honesty;
 mod matrix;
 mod measure;
@@ -28,6 +29,7 @@ pub(crate) fn studies() -> Vec<Study> {
     studies.push(spikes::study());
     studies.extend(unseen::studies());
     studies.extend(ablation::studies());
+    studies.extend(coupled::studies());
     studies
 }
 

@@ -4,7 +4,7 @@ use super::{quantity, table};
 use frames::{Main, Vec3};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
-use simulation::{Area, Coupling, FlexureChange, GaussMarkov, Impulses, QuasiStatic};
+use simulation::{Area, Coupling, FlexureChange, GaussMarkov, Impulses, QuasiStatic, Response};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -112,29 +112,44 @@ struct CouplingTable {
     #[serde(default, deserialize_with = "quantity::factor")]
     share: f64,
     #[serde(default, deserialize_with = "quantity::percent")]
-    wander_percent: f64,
-    #[serde(default = "nine_thousand_seconds", deserialize_with = "quantity::wander_h")]
-    wander_tau_h: f64,
+    wander_percent: Option<f64>,
+    #[serde(default, deserialize_with = "quantity::wander_h")]
+    wander_tau_h: Option<f64>,
+    #[serde(default, deserialize_with = "quantity::lag_s")]
+    delay_s: Option<f64>,
+    #[serde(default, deserialize_with = "quantity::resonance_hz")]
+    resonance_hz: Option<f64>,
+    #[serde(default, deserialize_with = "quantity::damping_percent")]
+    damping_percent: Option<f64>,
     #[serde(default = "none", deserialize_with = "quantity::quasi_static_arcsec")]
     in_phase_rotation_arcsec: Vec3<Main>,
 }
 
-fn nine_thousand_seconds() -> f64 {
-    9000.0
-}
+/// s.
+const USUAL_WANDER: f64 = 9000.0;
 
 fn none() -> Vec3<Main> {
     Vec3::ZERO
 }
 
+impl CouplingTable {
+    fn response(&self) -> Result<Response, &'static str> {
+        let wanders = self.wander_percent.is_some() || self.wander_tau_h.is_some();
+        match (wanders, self.delay_s, self.resonance_hz, self.damping_percent) {
+            (_, None, None, None) => Ok(Response::Phase {
+                wander: self.wander_percent.unwrap_or(0.0),
+                wander_tau: self.wander_tau_h.unwrap_or(USUAL_WANDER),
+            }),
+            (false, Some(delay_s), None, None) => Ok(Response::Delayed { delay_s }),
+            (false, None, Some(b), Some(damping)) => Ok(Response::Resonant { mu: damping * b, b }),
+            _ => Err("needs only one of `wander_percent`, `delay_s`, and `resonance_hz` with `damping_percent`"),
+        }
+    }
+}
+
 /// Flexure in step with the ship's swing.
 pub(super) fn coupling<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Coupling>, D::Error> {
-    table::one(deserializer).map(|table: CouplingTable| {
-        Some(Coupling {
-            share: table.share,
-            wander: table.wander_percent,
-            wander_tau: table.wander_tau_h,
-            in_phase_rotation: table.in_phase_rotation_arcsec,
-        })
-    })
+    let table: CouplingTable = table::one(deserializer)?;
+    let response = table.response().map_err(D::Error::custom)?;
+    Ok(Some(Coupling { share: table.share, response, in_phase_rotation: table.in_phase_rotation_arcsec }))
 }

@@ -182,6 +182,9 @@ quantities! {
     factor: 1.0, 0.0, 1e5;
     percent: 0.01, 0.0, 100.0;
     cell_ms: 1e-3, 0.1, 10_000.0;
+    lag_s: 1.0, 0.0, 5.0;
+    resonance_hz: std::f64::consts::TAU, 0.01, 5.0;
+    damping_percent: 0.01, 0.1, 90.0;
     wander_s: 1.0, 1.0, 1e6;
     wander_h: 3600.0, 0.01, 1000.0;
     clock_ppm: unit::PPM, -10_000.0, 10_000.0;

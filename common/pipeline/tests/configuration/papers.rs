@@ -5,7 +5,7 @@ use crate::text::{message_with, read_with};
 use frames::unit::{ARCMIN, ARCSEC, DEG_PER_H, DEGREE};
 use frames::{Rot, Vec3};
 use pipeline::configuration::Configuration;
-use simulation::{Oscillation, RandomSwing, Scenario, Simulator, Swing, Tones};
+use simulation::{Oscillation, RandomSwing, Response, Scenario, Simulator, Swing, Tones};
 use std::path::{Path, PathBuf};
 
 fn folder() -> PathBuf {
@@ -66,7 +66,8 @@ fn the_figures_are_those_of_the_papers() {
     assert!((printed.areas[0].installation.log() - Vec3::new(3.5e-3, 3.5e-3, 3.5e-3)).norm() < 1e-10);
     let s = scenario("error_range_strong_turns");
     assert_eq!((s.areas[0].coupling.unwrap().share, s.ship.turns.unwrap().every_s), (0.5, 1800.0));
-    assert!((s.areas[0].coupling.unwrap().wander_tau - 9000.0).abs() < 1e-9);
+    let Response::Phase { wander, wander_tau } = s.areas[0].coupling.unwrap().response else { panic!("{:?}", s.areas) };
+    assert!((wander - 0.35).abs() < 1e-15 && (wander_tau - 9000.0).abs() < 1e-9);
     assert!(
         scenario("error_range_weak").ship.turns.is_none() && scenario("error_range_weak").duration_s == Some(68_400.0)
     );
@@ -142,6 +143,31 @@ fn contradictions_are_told() {
             "10: area[0].simulation.flexure_changes",
             "in the order of their times",
         ),
+        (
+            "[area.simulation]\ncoupling = { share = 0.3, delay_s = 1, wander_percent = 35 }",
+            "10: area[0].simulation.coupling",
+            "needs only one of `wander_percent`, `delay_s`, and `resonance_hz` with `damping_percent`",
+        ),
+        (
+            "[area.simulation]\ncoupling = { share = 0.3, resonance_hz = 0.2 }",
+            "10: area[0].simulation.coupling",
+            "`resonance_hz` with `damping_percent`",
+        ),
+        (
+            "[area.simulation]\ncoupling = { delay_s = -1 }",
+            "10: area[0].simulation.coupling.delay_s = -1",
+            "must be within 0 to 5",
+        ),
+        (
+            "[area.simulation]\ncoupling = { resonance_hz = 0, damping_percent = 5 }",
+            "10: area[0].simulation.coupling.resonance_hz = 0",
+            "must be within 0.01 to 5",
+        ),
+        (
+            "[area.simulation]\ncoupling = { resonance_hz = 0.2, damping_percent = 100 }",
+            "10: area[0].simulation.coupling.damping_percent = 100",
+            "must be within 0.1 to 90",
+        ),
         ("[area.simulation]\nhull = 1", "10: area[0].simulation.hull = 1", "must be within 1000 to 9999"),
     ] {
         let message = message_with(lines);
@@ -161,6 +187,21 @@ fn what_bends_and_errs_is_read_in_si() {
     assert_eq!(area.impulses.unwrap().cell_s, 0.01);
     let coupling = area.coupling.unwrap();
     assert!((coupling.in_phase_rotation - Vec3::new(30.0, -20.0, 50.0) * ARCSEC).norm() < 1e-18);
-    assert_eq!((coupling.share, coupling.wander), (0.0, 0.0));
+    assert_eq!((coupling.share, coupling.response), (0.0, Response::Phase { wander: 0.0, wander_tau: 9000.0 }));
     assert_eq!(area.installation, Rot::exp(Vec3::new(10.0 * ARCMIN, 10.0 * ARCMIN, 30.0 * ARCMIN)));
+}
+
+#[test]
+fn a_coupling_is_read_in_three_forms() {
+    let response = |keys: &str| {
+        let coupling =
+            told(&format!("[area.simulation]\ncoupling = {{ share = 0.3, {keys} }}")).areas[0].coupling.unwrap();
+        assert_eq!(coupling.share, 0.3);
+        coupling.response
+    };
+    let hour = Response::Phase { wander: 0.2, wander_tau: 3600.0 };
+    assert_eq!(response("wander_percent = 20, wander_tau_h = 1"), hour);
+    assert_eq!(response("delay_s = 1.5"), Response::Delayed { delay_s: 1.5 });
+    let Response::Resonant { mu, b } = response("resonance_hz = 0.2, damping_percent = 5") else { panic!() };
+    assert!((b - std::f64::consts::TAU * 0.2).abs() < 1e-15 && (mu - 0.05 * b).abs() < 1e-15);
 }
