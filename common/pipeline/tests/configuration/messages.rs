@@ -90,7 +90,7 @@ fn a_wrong_type_is_told_with_the_right_one() {
     );
     assert_eq!(
         message_with("[area.estimator]\nmatching = \"ekf\""),
-        "ship.toml:10: area[0].estimator.matching = \"ekf\": must be one of \"so3\", \"rate\", \"residual_attitude\", \
+        "ship.toml:10: area[0].estimator.matching = \"ekf\": must be one of \"so3\", \"deck\", \"rate\", \"residual_attitude\", \
          \"small_angle\", \"exact_attitude\", \"rodrigues\", \"rodrigues_printed\", \"attitude_dcm\", \"quaternion\", \
          \"quaternion_delay\", \"quaternion_walk\", \"quaternion_network\", \"residual_attitude_network\", \
          \"residual_attitude_network_printed\", \"small_angle_network\", \"small_angle_network_printed\""
