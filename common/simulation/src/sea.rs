@@ -67,14 +67,22 @@ impl Sea {
     /// The swing without turns, for what bends with it.
     pub(crate) fn swing(&self, t: f64) -> SwingVector {
         let tracks = [(&self.pitch, 1.0), (&self.roll, 1.0), (&self.heading, -1.0)];
-        let signed = |(angle, rate): (f64, f64), sign: f64| [sign * angle, sign * rate];
+        let signed = |now: (f64, f64), sign: f64| {
+            let (angle, rate) = self.swollen(t, now);
+            [sign * angle, sign * rate]
+        };
         SwingVector {
             swing: tracks.map(|(track, sign)| signed(track.at(t), sign)),
             late: tracks.map(|(track, sign)| signed(track.late(t), sign)),
         }
     }
 
-    /// Standard deviation of each component of the swing, rad.
+    /// Angle (rad) and rate (rad/s) in the sea as it is by now, from those in the sea of the start.
+    fn swollen(&self, t: f64, start: (f64, f64)) -> (f64, f64) {
+        self.ship.sea_change.map_or(start, |change| change.apply(t, start))
+    }
+
+    /// Standard deviation of each component of the swing before the sea changes, rad.
     pub(crate) fn swing_rms(&self) -> [f64; 3] {
         [self.pitch.rms(), self.roll.rms(), self.heading.rms()]
     }
@@ -90,10 +98,10 @@ impl Sea {
     /// The motion at an instant.
     pub(crate) fn at(&self, time_ns: i64) -> Motion {
         let t = seconds(time_ns);
-        let (roll, roll_rate) = self.roll.at(t);
-        let (pitch, pitch_rate) = self.pitch.at(t);
+        let (roll, roll_rate) = self.swollen(t, self.roll.at(t));
+        let (pitch, pitch_rate) = self.swollen(t, self.pitch.at(t));
         let course = self.course(t);
-        let (sway, sway_rate) = self.heading.at(t);
+        let (sway, sway_rate) = self.swollen(t, self.heading.at(t));
         let (heading, heading_rate) = (course.0 + sway, course.1 + sway_rate);
         let nav_from_main = Euler { roll, pitch, heading }.rotation::<Main>();
         let inertial_from_nav = self.inertial_from_nav(t);
@@ -115,7 +123,7 @@ impl Sea {
         let begin = seconds(from.time_ns);
         let interval = seconds(to.time_ns - from.time_ns);
         let t = begin + interval / 2.0;
-        let (course, sway) = (self.course(t), self.heading.at(t));
+        let (course, sway) = (self.course(t), self.swollen(t, self.heading.at(t)));
         let middle = self.inertial_from_nav(t) * self.force(course, (course.0 + sway.0, course.1 + sway.1));
         (from.force_i + middle * 4.0 + to.force_i) * (interval / 6.0)
     }
