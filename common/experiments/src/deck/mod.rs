@@ -12,6 +12,7 @@ mod method;
 mod paired;
 mod scenario;
 mod spikes;
+mod troubles;
 mod unseen;
 
 use crate::Study;
@@ -26,6 +27,7 @@ pub(crate) fn studies() -> Vec<Study> {
     let mut studies: Vec<Study> = SCENARIOS.iter().map(study).collect();
     studies.push(spikes::study());
     studies.extend(unseen::studies());
+    studies.extend(troubles::studies());
     studies
 }
 
