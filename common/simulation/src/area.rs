@@ -27,6 +27,8 @@ pub struct Area {
     pub flexure: [GaussMarkov; 3],
     /// Models that take the place of the first one, in the order of their times; angle and rate go on from where they are.
     pub flexure_changes: Vec<FlexureChange>,
+    /// A second mode of the hull about x, y, z of m, independent of the first one and added to it; it has no changes.
+    pub second_flexure: Option<[GaussMarkov; 3]>,
     /// Whether the flexure is zero until t = 0, or else stationary from the start.
     pub starts_at_rest: bool,
     /// Gusts in what drives the flexure.
@@ -37,6 +39,8 @@ pub struct Area {
     pub unit: Unit<Sub>,
     /// What happens to its samples on their way.
     pub wire: Wire,
+    /// What goes wrong with the unit and its wire, in any order.
+    pub events: Vec<Event>,
 }
 
 /// 000 section 5, (3).
@@ -54,11 +58,13 @@ impl Default for Area {
                 GaussMarkov::critical(30.0, 10.0 * ARCMIN),
             ],
             flexure_changes: Vec::new(),
+            second_flexure: None,
             starts_at_rest: false,
             impulses: None,
             coupling: None,
             unit: Unit::default(),
             wire: Wire::default(),
+            events: Vec::new(),
         }
     }
 }
@@ -107,6 +113,28 @@ pub struct FlexureChange {
     pub at_s: f64,
     /// The flexure about x, y, z of m from there.
     pub flexure: [GaussMarkov; 3],
+}
+
+/// Something that goes wrong with a sub unit at a time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// s; the first sample that it concerns is the first one that truly ends then or later.
+    pub at_s: f64,
+    /// What goes wrong.
+    pub trouble: Trouble,
+}
+
+/// What goes wrong. What the unit would have felt and how it would have erred otherwise stays as it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Trouble {
+    /// The accelerometers read zero from there on.
+    DeadAccelerometers,
+    /// The gyro of a case axis, 0 to 2, repeats its last increment from there on.
+    StuckGyro(usize),
+    /// No sample that ends within so many s from there comes; their sequence numbers are missing.
+    Gap(f64),
+    /// The stamps are later by so many s from there on than before, earlier if negative.
+    DelayStep(f64),
 }
 
 /// Impulsive waves, 000 section 5: time is cut into cells, and in some of them the noise that drives the flexure is `factor`

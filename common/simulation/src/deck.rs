@@ -5,6 +5,7 @@ use crate::random::{Purpose, Source};
 use crate::sampling::Sampling;
 use crate::sea::{Motion, Sea, increments};
 use crate::simulator::header;
+use crate::troubles::Troubles;
 use crate::wire::Line;
 use frames::unit::seconds;
 use frames::{Inertial, Rot, Sub, Vec3};
@@ -14,6 +15,7 @@ use messages::{ImuSample, Truth};
 pub(crate) struct Deck {
     hull: Hull,
     imu: Imu<Sub>,
+    troubles: Troubles,
     line: Line,
     sampling: Sampling,
     /// The sample whose end comes next; the first is only where the first one that is given begins.
@@ -60,6 +62,7 @@ impl Deck {
                 begin_ns.min(sampling.instant(next)),
             ),
             imu: Imu::new(&area.unit, seed, u64::from(index) + 1),
+            troubles: Troubles::new(&area.events),
             line: Line::new(&area.wire, Source::new(seed, Purpose::Wire, u64::from(index))),
             sampling,
             next,
@@ -120,14 +123,16 @@ impl Deck {
         let dvel_i = main_dvel_i + to.lever_velocity_i - from.lever_velocity_i;
         let (dtheta, dvel) = increments(from.inertial_from_sub, to.inertial_from_sub, dvel_i);
         let interval_ns = end_ns - begin_ns;
-        let (dtheta, dvel) = self.imu.measure(dtheta, dvel, seconds(interval_ns));
-        self.line.send(ImuSample {
+        let (mut dtheta, mut dvel) = self.imu.measure(dtheta, dvel, seconds(interval_ns));
+        self.troubles.spoil(end_ns, &mut dtheta, &mut dvel);
+        let sample = ImuSample {
             header: header(self.run_id, self.next as u64, end_ns),
             interval_ns,
             dtheta,
             dvel,
             unit: self.index + 1,
             ..ImuSample::default()
-        });
+        };
+        self.line.send(sample, &self.troubles);
     }
 }

@@ -19,6 +19,7 @@ pub(crate) struct Hull {
     quasi_static: QuasiStatic,
     flexure: Processes<3>,
     source: Source,
+    second: Option<(Processes<3>, Source)>,
     /// In the order of their times; those before `next_change` are done.
     changes: Vec<FlexureChange>,
     next_change: usize,
@@ -55,6 +56,14 @@ impl Hull {
         if area.starts_at_rest {
             flexure.rest();
         }
+        let second = area.second_flexure.map(|models| {
+            let mut source = Source::new(seed, Purpose::SecondFlexure, index);
+            let mut second = Processes::stationary(models, &mut source);
+            if area.starts_at_rest {
+                second.rest();
+            }
+            (second, source)
+        });
         let mut changes = area.flexure_changes.clone();
         changes.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
         let coherence = area
@@ -67,6 +76,7 @@ impl Hull {
             quasi_static: area.quasi_static,
             flexure,
             source,
+            second,
             changes,
             next_change: 0,
             gusts: area.impulses.and_then(|i| Gusts::new(&i, Source::new(seed, Purpose::Impulses, index))),
@@ -100,6 +110,9 @@ impl Hull {
         let (gain, gust_ns) = self.gusts.as_mut().map_or((1.0, NEVER), |gusts| gusts.at(self.time_ns));
         let until_ns = time_ns.min(change_ns).min(gust_ns);
         self.flexure.advance(until_ns - self.time_ns, gain, &mut self.source);
+        if let Some((second, source)) = &mut self.second {
+            second.advance(until_ns - self.time_ns, gain, source);
+        }
         if let Some(coherence) = &mut self.coherence {
             coherence.advance(until_ns - self.time_ns);
         }
@@ -109,6 +122,10 @@ impl Hull {
     fn bend(&mut self, sea: &Sea, time_ns: i64) {
         self.now.theta = self.flexure.state().map(|[angle, _]| angle).into();
         self.now.rate = self.flexure.state().map(|[_, rate]| rate).into();
+        if let Some((second, _)) = &self.second {
+            self.now.theta += second.state().map(|[angle, _]| angle).into();
+            self.now.rate += second.state().map(|[_, rate]| rate).into();
+        }
         if let Some(coherence) = &mut self.coherence {
             let [angle, rate] = coherence.bend(sea, time_ns);
             self.now.theta += angle;

@@ -5,13 +5,14 @@
 //!
 //! | what | how |
 //! |---|---|
-//! | ship | roll, pitch and heading each a sine (000 eq 79), many tones (002) or a Gauss-Markov process (003 eq 30), band-limited or not; turns (004); constant speed; `n` turns against inertial space at a constant rate |
-//! | hull | `C_s^m(t) = Exp(theta(t)) Exp(q(t)) C_Phi`: [`Area`] defines it; each component of theta a second-order Gauss-Markov process (000 eq 3), stepped exactly, whose model can change (002) and whose waves can be impulsive (000) |
+//! | ship | roll, pitch and heading each a sine (000 eq 79), many tones (002) or a Gauss-Markov process (003 eq 30), band-limited or not; turns (004); a sea that grows; constant speed; `n` turns against inertial space at a constant rate |
+//! | hull | `C_s^m(t) = Exp(theta(t)) Exp(q(t)) C_Phi`: [`Area`] defines it; each component of theta a second-order Gauss-Markov process (000 eq 3), stepped exactly, whose model can change (002) and whose waves can be impulsive (000), and a second such process on top |
 //! | coupling | flexure in step with the ship's swing (004), late or through a resonator: [`Coupling`] defines it |
 //! | lever arm | `r = r0 + g theta x r0` (000 eq 6), `g` the gain that the scenario gives |
 //! | increments | exact rotation vectors between true attitudes, and specific force turned with the attitude half way |
 //! | errors | constant bias, scale and misalignment of a run, white noise, a first-order Gauss-Markov bias (001), outliers (000) |
 //! | wire | late, drifting and noisy stamps, own sampling instants, loss, duplicates, swaps |
+//! | troubles | dead accelerometers, a stuck gyro, a gap, a step of the delay, each at its time: [`Event`] defines them |
 //!
 //! ```
 //! use simulation::{Scenario, Simulator};
@@ -39,13 +40,15 @@ mod resonator;
 mod sampling;
 mod scenario;
 mod sea;
+mod sea_change;
 mod ship;
 mod simulator;
 mod swing;
+mod troubles;
 mod turns;
 mod wire;
 
-pub use area::{Area, Coupling, FlexureChange, GaussMarkov, Impulses, QuasiStatic, Response};
+pub use area::{Area, Coupling, Event, FlexureChange, GaussMarkov, Impulses, QuasiStatic, Response, Trouble};
 pub use scenario::{InsErrors, Outliers, Scenario, Unit, Wander, Wire};
-pub use ship::{Oscillation, RandomSwing, Ship, Swing, Tones, Turns};
+pub use ship::{Oscillation, RandomSwing, SeaChange, Ship, Swing, Tones, Turns};
 pub use simulator::{Epoch, Simulator};

@@ -14,6 +14,7 @@ pub(crate) enum Purpose {
     Outlier = 7,
     Impulses = 8,
     Coupling = 9,
+    SecondFlexure = 10,
 }
 
 /// A random source of its own for every purpose and area, so that drawing more in one never shifts another.
@@ -71,7 +72,7 @@ mod tests {
     #[test]
     fn no_two_purposes_share_a_stream() {
         use Purpose::*;
-        let purposes = [Unit, Flexure, Wire, Ins, Sea, BiasWander, Outlier, Impulses, Coupling];
+        let purposes = [Unit, Flexure, Wire, Ins, Sea, BiasWander, Outlier, Impulses, Coupling, SecondFlexure];
         let mut first: Vec<u64> = (0..20)
             .flat_map(|seed| purposes.iter().flat_map(move |p| (0..5).map(move |i| (seed, *p, i))))
             .map(|(seed, purpose, index)| Source::new(seed, purpose, index).0.next_u64())

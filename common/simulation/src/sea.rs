@@ -66,17 +66,17 @@ impl Sea {
 
     /// The swing (pitch, roll, -heading sway) without turns, for what bends with it: angle and rate of each, rad and rad/s.
     pub(crate) fn swing(&self, t: f64) -> [[f64; 2]; 3] {
-        self.signed(|track| track.at(t))
+        self.signed(t, |track| track.at(t))
     }
 
     /// The same a quarter of a period late.
     pub(crate) fn late(&self, t: f64) -> [[f64; 2]; 3] {
-        self.signed(|track| track.late(t))
+        self.signed(t, |track| track.late(t))
     }
 
-    fn signed(&self, of: impl Fn(&Track) -> (f64, f64)) -> [[f64; 2]; 3] {
+    fn signed(&self, t: f64, of: impl Fn(&Track) -> (f64, f64)) -> [[f64; 2]; 3] {
         self.swings().map(|(track, sign)| {
-            let (angle, rate) = of(track);
+            let (angle, rate) = self.swollen(t, of(track));
             [sign * angle, sign * rate]
         })
     }
@@ -85,7 +85,12 @@ impl Sea {
         [(&self.pitch, 1.0), (&self.roll, 1.0), (&self.heading, -1.0)]
     }
 
-    /// Standard deviation of each component of the swing, rad.
+    /// Angle (rad) and rate (rad/s) in the sea as it is by now, from those in the sea of the start.
+    fn swollen(&self, t: f64, start: (f64, f64)) -> (f64, f64) {
+        self.ship.sea_change.map_or(start, |change| change.apply(t, start))
+    }
+
+    /// Standard deviation of each component of the swing before the sea changes, rad.
     pub(crate) fn swing_rms(&self) -> [f64; 3] {
         self.swings().map(|(track, _)| track.rms())
     }
@@ -106,10 +111,10 @@ impl Sea {
     /// The motion at an instant.
     pub(crate) fn at(&self, time_ns: i64) -> Motion {
         let t = seconds(time_ns);
-        let (roll, roll_rate) = self.roll.at(t);
-        let (pitch, pitch_rate) = self.pitch.at(t);
+        let (roll, roll_rate) = self.swollen(t, self.roll.at(t));
+        let (pitch, pitch_rate) = self.swollen(t, self.pitch.at(t));
         let course = self.course(t);
-        let (sway, sway_rate) = self.heading.at(t);
+        let (sway, sway_rate) = self.swollen(t, self.heading.at(t));
         let (heading, heading_rate) = (course.0 + sway, course.1 + sway_rate);
         let nav_from_main = Euler { roll, pitch, heading }.rotation::<Main>();
         let inertial_from_nav = self.inertial_from_nav(t);
@@ -131,7 +136,7 @@ impl Sea {
         let begin = seconds(from.time_ns);
         let interval = seconds(to.time_ns - from.time_ns);
         let t = begin + interval / 2.0;
-        let (course, sway) = (self.course(t), self.heading.at(t));
+        let (course, sway) = (self.course(t), self.swollen(t, self.heading.at(t)));
         let middle = self.inertial_from_nav(t) * self.force(course, (course.0 + sway.0, course.1 + sway.1));
         (from.force_i + middle * 4.0 + to.force_i) * (interval / 6.0)
     }

@@ -25,6 +25,8 @@ pub struct Ship {
     pub velocity_follows_heading: bool,
     /// Turns of the course.
     pub turns: Option<Turns>,
+    /// The sea as it grows or calms down.
+    pub sea_change: Option<SeaChange>,
 }
 
 /// 000 section 5.
@@ -41,6 +43,7 @@ impl Default for Ship {
             heading: sway(10.0),
             velocity_follows_heading: false,
             turns: None,
+            sea_change: None,
         }
     }
 }
@@ -109,5 +112,18 @@ pub struct Turns {
     /// s; at least the length and one ramp.
     pub every_s: f64,
     /// How long the rate takes to rise, and to fall, s; positive.
+    pub ramp_s: f64,
+}
+
+/// Roll, pitch and heading sway become `factor` times as large between `at_s` and `at_s + ramp_s`, periods and phases unchanged:
+/// the amplitude is `1 + (factor - 1) h((t - at_s) / ramp_s)` with `h(u) = u^3 (10 - 15 u + 6 u^2)`, so that rate and acceleration
+/// are continuous. Flexure that is coupled to the swing follows it, other flexure does not.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SeaChange {
+    /// s.
+    pub at_s: f64,
+    /// How many times as large.
+    pub factor: f64,
+    /// How long it takes, s; without a positive time the change comes at once.
     pub ramp_s: f64,
 }

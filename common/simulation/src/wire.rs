@@ -2,6 +2,7 @@
 
 use crate::Wire;
 use crate::random::Source;
+use crate::troubles::Troubles;
 use frames::unit::{nanoseconds, seconds};
 use messages::ImuSample;
 use std::collections::VecDeque;
@@ -22,16 +23,17 @@ impl Line {
     }
 
     /// Sends a sample off, stamped true.
-    pub(crate) fn send(&mut self, mut sample: ImuSample) {
+    pub(crate) fn send(&mut self, mut sample: ImuSample, troubles: &Troubles) {
         let jitter = self.wire.jitter_s * self.source.normal();
         let lost = self.source.happens(self.wire.loss);
         let copies = if self.source.happens(self.wire.duplicate) { 2 } else { 1 };
         let late = self.source.happens(self.wire.swap);
-        if lost {
+        let end_ns = sample.header.time_ns;
+        if lost || troubles.silent(end_ns) {
             return;
         }
-        let end_ns = sample.header.time_ns;
-        let shift = nanoseconds(self.wire.delay_s + self.wire.skew * seconds(end_ns) + jitter);
+        let delay = self.wire.delay_s + troubles.delay_s(end_ns);
+        let shift = nanoseconds(delay + self.wire.skew * seconds(end_ns) + jitter);
         sample.header.time_ns = end_ns.saturating_add(shift);
         if let Some((earlier, earlier_copies)) = self.held.take() {
             self.enqueue(sample, copies);

@@ -40,6 +40,13 @@ fn a_warm_step_allocates_nothing() {
     let coupled = |response| Area {
         coupling: Some(Coupling { share: 0.1, response, in_phase_rotation }),
         impulses: Some(Impulses { factor: 50.0, probability: 5e-3, cell_s: 0.01 }),
+        second_flexure: Some([GaussMarkov::damped(0.1, 0.3, 1e-4); 3]),
+        events: vec![
+            Event { at_s: 30.0, trouble: Trouble::StuckGyro(1) },
+            Event { at_s: 40.0, trouble: Trouble::DeadAccelerometers },
+            Event { at_s: 50.0, trouble: Trouble::Gap(5.0) },
+            Event { at_s: 60.0, trouble: Trouble::DelayStep(0.02) },
+        ],
         quasi_static: QuasiStatic { amplitude: [1e-3; 3], period: 7200.0, phase: [0.0; 3] },
         ..Area::default()
     };
@@ -51,7 +58,8 @@ fn a_warm_step_allocates_nothing() {
     let areas = std::iter::once(Area { wire, ..Area::default() }).chain(responses.map(coupled)).collect();
     let roll = Swing::Random(RandomSwing { mu: 0.06, b: 0.44, sigma: 0.06, band_limit_hz: Some(0.4) });
     let pitch = Swing::Tones(Tones { rms: 0.05, period: 8.0, count: 24 });
-    let ship = Ship { roll, pitch, ..Ship::default() };
+    let sea_change = Some(SeaChange { at_s: 30.0, factor: 2.0, ramp_s: 60.0 });
+    let ship = Ship { roll, pitch, sea_change, ..Ship::default() };
     let mut simulator = Simulator::new(&Scenario { ship, areas, duration_s: None, ..Scenario::default() });
     (0..2000).for_each(|_| _ = simulator.step());
     let before = ALLOCATIONS.load(Ordering::Relaxed);

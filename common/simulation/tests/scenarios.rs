@@ -33,12 +33,14 @@ fn rich(seed: u64) -> Scenario {
     scenario.ship.pitch = Swing::Tones(Tones { rms: 0.04, period: 8.0, count: 24 });
     scenario.ship.speed = 5.0;
     scenario.ship.turns = Some(Turns { rate: 0.03, length_s: 20.0, every_s: 40.0, ramp_s: 10.0 });
+    scenario.ship.sea_change = Some(SeaChange { at_s: 50.0, factor: 1.5, ramp_s: 20.0 });
     let area = &mut scenario.areas[0];
     area.installation = Rot::exp(Vec3::new(0.1, -0.3, 2.5));
     area.quasi_static = QuasiStatic { amplitude: [0.01, 0.02, -0.03], period: 300.0, phase: [0.0, 0.3, 0.6] };
     let flexure = [0.4, 0.6, 0.5].map(|b| GaussMarkov { mu: 0.1, b, sigma: 3e-3 });
     area.flexure_changes =
         vec![FlexureChange { at_s: 33.337, flexure }, FlexureChange { at_s: 70.0, flexure: [flexure[1]; 3] }];
+    area.second_flexure = Some([GaussMarkov::damped(0.2, 0.3, 1e-3); 3]);
     area.impulses = Some(Impulses { factor: 50.0, probability: 5e-4, cell_s: 0.01 });
     let in_phase_rotation = Vec3::new(30.0, -20.0, 50.0) * ARCSEC;
     area.coupling =
@@ -87,6 +89,7 @@ fn rates_of_the_flexure_are_derivatives_of_its_angle() {
     area.impulses = None;
     // hardly driven, so that the differences of the truth are good rates
     area.flexure = [0.5, 0.7, 0.3].map(|b| GaussMarkov { mu: 1e-8, b, sigma: 5e-3 });
+    area.second_flexure = Some([0.8, 0.6, 0.9].map(|b| GaussMarkov { mu: 1e-8, b, sigma: 2e-3 }));
     let next = area.flexure.map(|m| GaussMarkov { b: 1.5 * m.b, ..m });
     area.flexure_changes = vec![FlexureChange { at_s: 33.337, flexure: next }];
     let arm = area.lever_arm;

@@ -14,6 +14,7 @@ mod method;
 mod paired;
 mod scenario;
 mod spikes;
+mod troubles;
 mod unseen;
 
 use crate::Study;
@@ -30,6 +31,7 @@ pub(crate) fn studies() -> Vec<Study> {
     studies.extend(unseen::studies());
     studies.extend(ablation::studies());
     studies.extend(coupled::studies());
+    studies.extend(troubles::studies());
     studies
 }
 

@@ -38,7 +38,7 @@ pub(super) struct Scenario {
 }
 
 /// Every scenario has the spike test, whether it has spikes or not.
-const SPIKE_THRESHOLD: f64 = 5.0;
+pub(super) const SPIKE_THRESHOLD: f64 = 5.0;
 
 /// Of the ratio.
 const USUAL: (f64, f64) = (1.05, 1.15);

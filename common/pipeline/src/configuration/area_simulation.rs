@@ -1,11 +1,11 @@
 //! What the simulator makes of an area; the defaults are those of paper 000 section 5.
 
 use super::instrument::{Accel, Gyro};
-use super::{Wire, flexure, quantity, table, unit_errors};
+use super::{Wire, events, flexure, quantity, table, unit_errors};
 use frames::unit::ARCMIN;
 use frames::{Main, Vec3};
 use serde::Deserialize;
-use simulation::{Coupling, FlexureChange, GaussMarkov, Impulses, Outliers, QuasiStatic, Wander};
+use simulation::{Coupling, Event, FlexureChange, GaussMarkov, Impulses, Outliers, QuasiStatic, Wander};
 
 /// One area: its true installation and flexure, its true unit and the way of its data.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -26,6 +26,9 @@ pub struct AreaSimulation {
     /// Flexure models from later times on.
     #[serde(deserialize_with = "flexure::changes")]
     pub flexure_changes: Vec<FlexureChange>,
+    /// A second mode of the hull, added to the first.
+    #[serde(deserialize_with = "flexure::second")]
+    pub second_flexure: Option<[GaussMarkov; 3]>,
     /// Whether the flexure is zero at the start.
     pub starts_at_rest: bool,
     /// Impulsive waves.
@@ -52,6 +55,9 @@ pub struct AreaSimulation {
     /// Samples of the unit that are far off.
     #[serde(deserialize_with = "unit_errors::outliers")]
     pub outliers: Outliers,
+    /// What goes wrong with the unit and its wire.
+    #[serde(deserialize_with = "events::events")]
+    pub events: Vec<Event>,
 }
 
 impl Default for AreaSimulation {
@@ -63,6 +69,7 @@ impl Default for AreaSimulation {
             hull: None,
             flexure: usual.flexure,
             flexure_changes: Vec::new(),
+            second_flexure: None,
             starts_at_rest: false,
             impulses: None,
             coupling: None,
@@ -72,6 +79,7 @@ impl Default for AreaSimulation {
             accel: None,
             bias_wander: Wander::default(),
             outliers: Outliers::default(),
+            events: Vec::new(),
         }
     }
 }

@@ -55,6 +55,24 @@ pub(super) fn models<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[Gaus
     }
 }
 
+/// A second mode, all of which is told: the usual flexure once more would be no second one.
+pub(super) fn second<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<[GaussMarkov; 3]>, D::Error> {
+    let table: FlexureTable = table::one(deserializer)?;
+    let [told, size] = [
+        table.tau_s.is_some() || table.mu_per_s.is_some(),
+        table.sigma_arcmin.is_some() || table.sigma_arcsec.is_some() || table.sigma_mrad.is_some(),
+    ];
+    match table.at_s {
+        None if told && size => table.models().map(Some).map_err(D::Error::custom),
+        None => Err(D::Error::custom(
+            "needs `tau_s` or `mu_per_s`, and one of `sigma_arcmin`, `sigma_arcsec`, `sigma_mrad`",
+        )),
+        Some(_) => {
+            Err(D::Error::custom("`at_s` belongs to `flexure_changes`: a second mode is there from the start on"))
+        }
+    }
+}
+
 /// The flexure from later times on, in their order.
 pub(super) fn changes<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<FlexureChange>, D::Error> {
     let change = |table: &FlexureTable| match table.at_s {

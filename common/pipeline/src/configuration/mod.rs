@@ -5,6 +5,7 @@ mod area_simulation;
 mod document;
 mod error;
 mod estimator;
+mod events;
 mod flexure;
 mod identifier;
 mod instrument;

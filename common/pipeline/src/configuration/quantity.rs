@@ -174,7 +174,9 @@ quantities! {
     band_limit_hz: 1.0, 0.05, 5.0;
     turn_deg_per_s: unit::DEGREE, -10.0, 10.0;
     turn_s: 1.0, 1.0, 86_400.0;
+    sea_factor: 1.0, 0.0, 10.0;
     change_s: 1.0, 0.0, 1e8;
+    gap_s: 1.0, 0.001, 1e6;
     flexure_arcsec: unit::ARCSEC, 0.0, 36_000.0;
     flexure_mrad: 1e-3, 0.0, 180.0;
     quasi_static_arcsec: unit::ARCSEC, -36_000.0, 36_000.0;

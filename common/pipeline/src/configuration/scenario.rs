@@ -23,6 +23,7 @@ impl Configuration {
                 heading: s.heading,
                 velocity_follows_heading: s.velocity_follows_heading,
                 turns: s.turns,
+                sea_change: s.sea_change,
             },
             main: Unit {
                 bias_wander: s.bias_wander,
@@ -58,6 +59,7 @@ fn area(area: &Area) -> simulation::Area {
         hull: s.hull,
         flexure: s.flexure,
         flexure_changes: s.flexure_changes.clone(),
+        second_flexure: s.second_flexure,
         starts_at_rest: s.starts_at_rest,
         impulses: s.impulses,
         coupling: s.coupling,
@@ -77,5 +79,6 @@ fn area(area: &Area) -> simulation::Area {
             swap: s.wire.swap,
             transit_s: s.wire.transit,
         },
+        events: s.events.clone(),
     }
 }

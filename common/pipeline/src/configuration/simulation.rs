@@ -4,7 +4,7 @@ use super::instrument::{Accel, Gyro};
 use super::{quantity, swing, table, unit_errors};
 use frames::unit::{ARCSEC, DEGREE, KNOT};
 use serde::Deserialize;
-use simulation::{Swing, Turns, Wander};
+use simulation::{SeaChange, Swing, Turns, Wander};
 
 /// The ship and its main unit.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
@@ -36,6 +36,9 @@ pub struct Simulation {
     /// Turns of the course.
     #[serde(deserialize_with = "swing::turns")]
     pub turns: Option<Turns>,
+    /// The sea as it grows or calms down.
+    #[serde(deserialize_with = "swing::sea_change")]
+    pub sea_change: Option<SeaChange>,
     /// Errors of the main unit's attitude.
     #[serde(deserialize_with = "table::one")]
     pub ins: Ins,
@@ -62,6 +65,7 @@ impl Default for Simulation {
             pitch: swing::TILT,
             heading: swing::YAW,
             turns: None,
+            sea_change: None,
             ins: Ins::default(),
             gyro: None,
             accel: None,

@@ -4,7 +4,7 @@ use super::{quantity, table};
 use frames::unit::DEGREE;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
-use simulation::{GaussMarkov, Oscillation, RandomSwing, Swing, Tones, Turns};
+use simulation::{GaussMarkov, Oscillation, RandomSwing, SeaChange, Swing, Tones, Turns};
 
 const fn sine(period: f64) -> Oscillation {
     Oscillation { amplitude: 10.0 * DEGREE, period, phase: 0.0, random_phase: false }
@@ -97,4 +97,25 @@ pub(super) fn turns<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option
         return Err(D::Error::custom("needs `ramp_s` up to `length_s`, and `every_s` from `length_s` + `ramp_s` on"));
     }
     Ok(Some(Turns { rate: rate_deg_per_s, length_s, every_s, ramp_s }))
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct SeaChangeTable {
+    #[serde(deserialize_with = "quantity::change_s")]
+    at_s: f64,
+    #[serde(deserialize_with = "quantity::sea_factor")]
+    factor: f64,
+    #[serde(default = "one_minute", deserialize_with = "quantity::turn_s")]
+    ramp_s: f64,
+}
+
+fn one_minute() -> f64 {
+    60.0
+}
+
+/// A sea that grows or calms down.
+pub(super) fn sea_change<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<SeaChange>, D::Error> {
+    let SeaChangeTable { at_s, factor, ramp_s } = table::one(deserializer)?;
+    Ok(Some(SeaChange { at_s, factor, ramp_s }))
 }

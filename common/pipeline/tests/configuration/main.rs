@@ -1,5 +1,6 @@
 //! Configurations: what is read, in which units, and what each mistake is told.
 
+mod events;
 mod messages;
 mod papers;
 mod rules;
