@@ -54,10 +54,7 @@ impl Coherence {
                 let resonance = Resonance { mu, b };
                 let rms = sea.resonant_rms(&resonance);
                 let gains = sigma.map(|sigma| gains(sigma, rms.map(|[angle, _]| angle), &mut source));
-                Answer::Resonant {
-                    gains,
-                    resonator: Resonator::stationary(resonance, rms, (sea, time_ns), &mut source),
-                }
+                Answer::Resonant { gains, resonator: Resonator::stationary(resonance, rms, sea, time_ns, &mut source) }
             }
         };
         Self { in_phase_rotation: coupling.in_phase_rotation, answer }

@@ -76,7 +76,8 @@ impl Resonator {
     pub(crate) fn stationary(
         resonance: Resonance,
         rms: [[f64; 2]; 3],
-        (sea, begin_ns): (&Sea, i64),
+        sea: &Sea,
+        begin_ns: i64,
         source: &mut Source,
     ) -> Self {
         let state = rms.map(|component| component.map(|rms| rms * source.normal()));
