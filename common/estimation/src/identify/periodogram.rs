@@ -65,8 +65,16 @@ impl Periodogram {
 /// On each side so many bands of frequencies above the sampling's are folded into the one that is seen.
 const FOLDS: i32 = 2;
 
-/// Density of a sampled series without noise at the angular frequency `w`, and its derivatives in `ln mu`, `ln b`, `ln Q`.
-pub fn density(model: &Flexure, kind: Kind, step_s: f64, w: f64) -> (f64, [f64; 3]) {
+/// What a series shows of the angle's density at the angular frequency `w`; the mean rate over a step is a difference of angles.
+pub fn gain(kind: Kind, step_s: f64, w: f64) -> f64 {
+    match kind {
+        Kind::Angles => 1.0,
+        Kind::Rates => (2.0 * (w * step_s / 2.0).sin() / step_s).powi(2),
+    }
+}
+
+/// Density of a sampled series without noise at the angular frequency `w` with its [`gain`], and its derivatives in `ln mu`, `ln b`, `ln Q`.
+pub fn density(model: &Flexure, gain: f64, step_s: f64, w: f64) -> (f64, [f64; 3]) {
     let (b2, mu2) = (model.b * model.b, model.mu * model.mu);
     let (mut sum, mut by_mu, mut by_b) = (0.0, 0.0, 0.0);
     for fold in -FOLDS..=FOLDS {
@@ -78,11 +86,6 @@ pub fn density(model: &Flexure, kind: Kind, step_s: f64, w: f64) -> (f64, [f64; 
         by_mu -= 2.0 * damped / (bottom * bottom);
         by_b -= 4.0 * b2 * away / (bottom * bottom);
     }
-    let gain = match kind {
-        Kind::Angles => 1.0,
-        // The mean rate over a step is a difference of angles.
-        Kind::Rates => (2.0 * (w * step_s / 2.0).sin() / step_s).powi(2),
-    };
     let size = gain * model.density();
     (size * sum, [size * by_mu, size * by_b, size * sum])
 }

@@ -13,7 +13,7 @@
 
 use super::axis::Identified;
 use super::bound::Band;
-use super::periodogram::{Periodogram, Taper, density};
+use super::periodogram::{Periodogram, Taper, density, gain};
 use super::refinement::{DAMPING, FREQUENCY, MEDIANS, PRIOR_SD};
 use super::series::{Kind, Series};
 use crate::flexure::Flexure;
@@ -95,7 +95,8 @@ pub fn against_slow(series: &Series, slow: f64) -> Option<f64> {
 
 struct Fit {
     data: Periodogram,
-    kind: Kind,
+    /// What the series shows of an angle's density, frequency by frequency.
+    gains: Vec<f64>,
     step_s: f64,
     settings: Settings,
     /// Whether damping and frequency stay where they are.
@@ -110,7 +111,14 @@ fn flexure(logs: &Vector4<f64>) -> Flexure {
 impl Fit {
     fn new(series: &Series, settings: &Settings) -> Option<Self> {
         let data = Periodogram::new(series, settings.taper, settings.band_hz)?;
-        Some(Self { data, kind: series.kind, step_s: series.step_s, settings: *settings, held: false })
+        let gains = data.frequencies.iter().map(|w| gain(series.kind, series.step_s, *w)).collect();
+        Some(Self { data, gains, step_s: series.step_s, settings: *settings, held: false })
+    }
+
+    /// Frequency (rad/s), gain and power of each line.
+    fn lines(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
+        let Periodogram { frequencies, power, .. } = &self.data;
+        frequencies.iter().zip(&self.gains).zip(power).map(|((w, gain), power)| (*w, *gain, *power))
     }
 
     /// The best logarithms from all starts, and their cost.
@@ -137,7 +145,7 @@ impl Fit {
     /// The logarithms of damping, frequency, density, and noise; the density such that the total power is right.
     fn start(&self, mu: f64, b: f64) -> Vector4<f64> {
         let unit = Flexure { mu, b, sigma: 1.0 };
-        let model: f64 = self.data.frequencies.iter().map(|w| density(&unit, self.kind, self.step_s, *w).0).sum();
+        let model: f64 = self.lines().map(|(w, gain, _)| density(&unit, gain, self.step_s, w).0).sum();
         let ratio = self.data.power.iter().sum::<f64>() / model;
         Vector4::new(mu.ln(), b.ln(), (unit.density() * ratio).ln(), (0.5 * self.floor()).ln())
     }
@@ -154,10 +162,10 @@ impl Fit {
     /// Minus the logarithm of the posterior density.
     fn cost(&self, logs: &Vector4<f64>) -> f64 {
         let (model, noise) = (flexure(logs), self.noise(logs));
-        let bins = self.data.frequencies.iter().zip(&self.data.power);
-        let misfit: f64 = bins
-            .map(|(w, power)| {
-                let level = density(&model, self.kind, self.step_s, *w).0 + noise;
+        let misfit: f64 = self
+            .lines()
+            .map(|(w, gain, power)| {
+                let level = density(&model, gain, self.step_s, w).0 + noise;
                 level.ln() + power / level
             })
             .sum();
@@ -170,8 +178,8 @@ impl Fit {
     fn scores(&self, logs: &Vector4<f64>) -> (Vector4<f64>, Matrix4<f64>) {
         let (model, noise) = (flexure(logs), self.noise(logs));
         let (mut downhill, mut information) = (Vector4::zeros(), Matrix4::zeros());
-        for (w, power) in self.data.frequencies.iter().zip(&self.data.power) {
-            let (flexible, slopes) = density(&model, self.kind, self.step_s, *w);
+        for (w, gain, power) in self.lines() {
+            let (flexible, slopes) = density(&model, gain, self.step_s, w);
             let level = flexible + noise;
             let slope = Vector4::new(slopes[0], slopes[1], slopes[2], noise) / level;
             downhill += slope * (power / level - 1.0);

@@ -2,7 +2,7 @@ use super::Settings;
 use super::axis::Identified;
 use super::chain::{Anchor, Chain};
 use super::change::changed;
-use super::safety::{is_not_slow, safe};
+use super::safety::{SHORT_S, is_not_slow, safe};
 use super::series::{Kind, Series};
 use super::window::Window;
 use crate::Identifier;
@@ -55,13 +55,14 @@ impl Windowed {
 
     /// What a filter gets.
     fn models(&self, axes: &[Identified; 3], chain: &Chain) -> [Flexure; 3] {
+        let length_s = self.window.length_s();
         let model = |(axis, values): (&Identified, &Vec<f64>)| {
-            let series = Series { kind: Kind::Rates, values, step_s: chain.step_s };
-            let believed = self.settings.provisional && is_not_slow(&series);
-            match self.settings.safety {
-                true => safe(axis, if believed { f64::INFINITY } else { self.window.length_s() }),
-                false => axis.flexure,
+            if !self.settings.safety {
+                return axis.flexure;
             }
+            let series = Series { kind: Kind::Rates, values, step_s: chain.step_s };
+            let believed = self.settings.provisional && length_s <= SHORT_S && is_not_slow(&series);
+            safe(axis, if believed { f64::INFINITY } else { length_s })
         };
         [0, 1, 2].map(|i| model((&axes[i], &chain.rates[i])))
     }

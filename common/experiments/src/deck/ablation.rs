@@ -42,7 +42,8 @@ const PARTS: [Part; 8] = [
 ];
 
 /// The scenarios in which parts are taken out.
-const PLACES: [&str; 8] = ["000", "000-gyros", "000-impulsive", "000-low-grade", "001-30", "002-later", "002-changes", "003"];
+const PLACES: [&str; 8] =
+    ["000", "000-gyros", "000-impulsive", "000-low-grade", "001-30", "002-later", "002-changes", "003"];
 
 /// Key and name of the spans.
 const NAMES: [(&str, &str); 2] = [("late", "after 5 min"), ("early", "from 1 to 5 min")];
@@ -67,7 +68,8 @@ fn measure(scenario: &Scenario, trial: &Trial) -> Result<Measured, Fault> {
     let whole = run_blind(&default, &data);
     let without = |part: &Part| {
         let changed = default.with(part.remove);
-        let other = if part.of_data { run_blind(&changed, &Data::simulate(&changed)?) } else { run_blind(&changed, &data) };
+        let other =
+            if part.of_data { run_blind(&changed, &Data::simulate(&changed)?) } else { run_blind(&changed, &data) };
         let paired = SPANS.map(|span| Paired::of(whole.over(span.clone()), other.over(span)));
         Ok((paired, mean(&other.over(*SPANS[1].start()..).coverage(|point| point.range))))
     };
