@@ -61,6 +61,9 @@ impl Habit {
     }
 }
 
+/// No deck falls so freely that its accelerometers feel less than this, m/s^2.
+const LEAST_FORCE: f64 = 1.0;
+
 /// The memory of the channels: three gyros, then three accelerometers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Channels {
@@ -90,6 +93,10 @@ impl Channels {
             if self.range.is_some_and(|range| rate.abs() >= CLIP * range) {
                 flags |= Flags::SATURATED;
             }
+        }
+        let force = sample.dvel.iter().map(|v| v * v).sum::<f64>().sqrt() / interval_s;
+        if force < LEAST_FORCE && self.habits[3..].iter().any(Habit::has_moved) {
+            flags |= Flags::ACCEL_STUCK;
         }
         if self.habits.iter().any(|habit| habit.run == 0) {
             if stuck[..3].contains(&true) {

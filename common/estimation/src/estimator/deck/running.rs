@@ -4,14 +4,17 @@ use super::DeckSettings;
 use super::surprise::Surprise;
 use crate::filter::{sequential, symmetrise};
 use crate::flexure::Flexure;
-use crate::matching::Matching;
-use crate::matching::deck::{Covariance, Deck, STATES, place};
+use crate::matching::deck::{Covariance, Deck, ROWS, STATES, VELOCITY_ROW, place};
 use crate::matching::increment::Increment;
+use crate::matching::{Matching, Observation};
 use frames::unit;
 use nalgebra::SMatrix;
 
 /// Beyond this standard deviation (rad) the constant is not worth keeping.
 const BROKEN: f64 = 0.1;
+
+/// A velocity that is off by so many deviations is not one to learn from: accelerometers have failed for a moment.
+const LOST: f64 = 30.0;
 
 /// Model and covariance.
 #[derive(Clone, Debug)]
@@ -87,6 +90,10 @@ impl Running {
                 self.start_epoch();
             }
             let mut seen = self.deck.observe();
+            if self.has_lost_velocity(&seen) {
+                self.deck.forget_velocity();
+                seen = self.deck.observe();
+            }
             let left_out = self.left_out();
             (0..3).for_each(|axis| seen.noise[(axis, axis)] += left_out);
             let correction = sequential::update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
@@ -94,6 +101,14 @@ impl Running {
             self.surprise.take(correction.surprise);
         }
         self.is_sound()
+    }
+
+    fn has_lost_velocity(&self, seen: &Observation<STATES, ROWS>) -> bool {
+        (VELOCITY_ROW..ROWS).any(|k| {
+            let row = seen.matrix.row(k);
+            let variance = (row * self.p * row.transpose())[0] + seen.noise[(k, k)];
+            seen.residual[k].powi(2) > LOST * LOST * variance
+        })
     }
 
     /// Variance about each axis of what a matching that is linear in its errors leaves out, rad^2: flexure and static part's error do not commute.

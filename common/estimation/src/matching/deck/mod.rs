@@ -39,6 +39,8 @@ use velocity::Scene;
 pub const STATES: usize = 44;
 /// Size of the measurement: attitude, then velocity.
 pub const ROWS: usize = 6;
+/// The first of them that compares velocities.
+pub const VELOCITY_ROW: usize = 3;
 
 /// Covariance of the error state.
 pub type Covariance = SMatrix<f64, STATES, STATES>;
@@ -123,13 +125,18 @@ impl Deck {
         self.so3.pending_s()
     }
 
+    /// Forgets the velocity; it starts anew from what the lever arm gives.
+    pub fn forget_velocity(&mut self) {
+        if let Some(velocity) = &mut self.velocity {
+            velocity.restart();
+        }
+    }
+
     /// Forgets the attitudes: those to come have other starting axes.
     pub fn restart(&mut self) {
         self.attitudes.restart();
         (self.together, self.waiting) = (None, None);
-        if let Some(velocity) = &mut self.velocity {
-            velocity.restart();
-        }
+        self.forget_velocity();
     }
 
     /// Starts an epoch: the constant is defined by the deformation as it is believed to be now. Gives the transition of the error state.
@@ -139,9 +146,7 @@ impl Deck {
         let mut transition = embedded(&self.so3.start_epoch(now.a_m, now.a_s, turn), 1.0);
         let by_delay = now.a_m.matrix() * now.w_m.column();
         transition.fixed_view_mut::<3, 1>(place::CONSTANT, place::DELAY).copy_from(&by_delay);
-        if let Some(velocity) = &mut self.velocity {
-            velocity.restart();
-        }
+        self.forget_velocity();
         Some(transition)
     }
 
@@ -273,9 +278,9 @@ impl Matching<STATES, ROWS> for Deck {
         seen.noise.fixed_view_mut::<3, 3>(0, 0).copy_from(&attitude.noise);
         if let Some(velocity) = self.velocity.as_ref().filter(|velocity| velocity.is_begun()) {
             let scene = self.scene(&now);
-            seen.residual.fixed_rows_mut::<3>(3).copy_from(&velocity.residual(&scene));
-            seen.matrix.fixed_rows_mut::<3>(3).copy_from(&velocity.matrix(&scene));
-            seen.noise.fixed_view_mut::<3, 3>(3, 3).fill_diagonal(velocity.variance(&self.grade));
+            seen.residual.fixed_rows_mut::<3>(VELOCITY_ROW).copy_from(&velocity.residual(&scene));
+            seen.matrix.fixed_rows_mut::<3>(VELOCITY_ROW).copy_from(&velocity.matrix(&scene));
+            seen.noise.fixed_view_mut::<3, 3>(VELOCITY_ROW, VELOCITY_ROW).fill_diagonal(velocity.variance(&self.grade));
         }
         seen
     }
