@@ -132,6 +132,8 @@ pub fn left_out(configuration: &Configuration, area: usize) -> Vec<&'static str>
         (truth.coupling.is_some(), "flexure in step with the ship's swing (area.simulation.coupling)"),
         (truth.impulses.is_some(), "impulsive waves (area.simulation.impulses)"),
         (!truth.flexure_changes.is_empty(), "changes of the flexure model (area.simulation.flexure_changes)"),
+        (truth.second_flexure.is_some(), "a second mode of the hull (area.simulation.second_flexure)"),
+        (!truth.events.is_empty(), "what goes wrong with the unit (area.simulation.events)"),
         (truth.starts_at_rest, "flexure that is zero at the start (area.simulation.starts_at_rest)"),
         (truth.outliers != usual.outliers, "samples that are far off (area.simulation.outliers)"),
         (
