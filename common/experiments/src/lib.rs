@@ -41,6 +41,8 @@ use rayon::prelude::*;
 pub struct Experiment {
     /// As the command line calls it.
     pub name: &'static str,
+    /// What it belongs to, and the command line's name of all that belongs there.
+    pub group: Option<&'static str>,
     /// Number and subject.
     pub title: &'static str,
     /// Its studies, in the order of the paper.
@@ -48,14 +50,26 @@ pub struct Experiment {
 }
 
 /// All of them, in the order of their output.
-pub const EXPERIMENTS: [Experiment; 6] = [
-    Experiment { name: "idam", title: idam::TITLE, studies: idam::studies },
-    Experiment { name: "q-nnkf", title: q_nnkf::TITLE, studies: q_nnkf::studies },
-    Experiment { name: "model-free", title: model_free::TITLE, studies: model_free::studies },
-    Experiment { name: "tufts-kumaresan", title: tufts_kumaresan::TITLE, studies: tufts_kumaresan::studies },
-    Experiment { name: "error-range", title: error_range::TITLE, studies: error_range::studies },
-    Experiment { name: "deck", title: deck::TITLE, studies: deck::studies },
+pub const EXPERIMENTS: [Experiment; 10] = [
+    paper("idam", idam::TITLE, idam::studies),
+    paper("q-nnkf", q_nnkf::TITLE, q_nnkf::studies),
+    paper("model-free", model_free::TITLE, model_free::studies),
+    paper("tufts-kumaresan", tufts_kumaresan::TITLE, tufts_kumaresan::studies),
+    paper("error-range", error_range::TITLE, error_range::studies),
+    own("deck-scenarios", deck::SCENARIOS_TITLE, deck::scenarios),
+    own("deck-unseen", deck::UNSEEN_TITLE, deck::unseen),
+    own("deck-troubles", deck::TROUBLES_TITLE, deck::troubles),
+    own("deck-coupling", deck::COUPLING_TITLE, deck::coupling),
+    own("deck-parts", deck::PARTS_TITLE, deck::parts),
 ];
+
+const fn paper(name: &'static str, title: &'static str, studies: fn() -> Vec<Study>) -> Experiment {
+    Experiment { name, group: None, title, studies }
+}
+
+const fn own(name: &'static str, title: &'static str, studies: fn() -> Vec<Study>) -> Experiment {
+    Experiment { name, group: Some("deck"), title, studies }
+}
 
 impl Experiment {
     /// How much there is to do, in the unit of [`Watch::done`].

@@ -1,7 +1,8 @@
 use experiments::{EXPERIMENTS, Experiment};
+use std::collections::BTreeSet;
 use std::str::FromStr;
 
-/// One experiment, or all of them.
+/// One experiment, those of a group, or all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Selection(Option<&'static str>);
 
@@ -11,13 +12,19 @@ pub struct Selection(Option<&'static str>);
 pub struct UnknownExperiment(String);
 
 fn names() -> Vec<&'static str> {
-    EXPERIMENTS.iter().map(|experiment| experiment.name).collect()
+    let mut names: Vec<_> =
+        EXPERIMENTS.iter().flat_map(|experiment| [Some(experiment.name), experiment.group]).flatten().collect();
+    let mut told = BTreeSet::new();
+    names.retain(|name| told.insert(*name));
+    names
 }
 
 impl Selection {
     /// Those that are selected, in the order of the output.
     pub fn experiments(self) -> impl Iterator<Item = &'static Experiment> + Clone {
-        EXPERIMENTS.iter().filter(move |experiment| self.0.is_none_or(|name| name == experiment.name))
+        EXPERIMENTS.iter().filter(move |experiment| {
+            self.0.is_none_or(|name| name == experiment.name || experiment.group == Some(name))
+        })
     }
 }
 

@@ -51,7 +51,7 @@ const NAMES: [(&str, &str); 2] = [("late", "after 5 min"), ("early", "from 1 to 
 /// A trial: by part and span, the whole estimator beside the one without the part, and the share of errors that the latter's range holds.
 type Measured = Option<Vec<([Option<Paired>; 2], f64)>>;
 
-pub(super) fn studies() -> Vec<Study> {
+pub(crate) fn studies() -> Vec<Study> {
     let study = |scenario: &'static Scenario| {
         let trials = Trials { full: 10, quick: 1 };
         let cost = scenario.cost() * PARTS.len() as u64;

@@ -111,7 +111,7 @@ struct Measured {
 }
 
 /// Without turns, then with turns, then uncoupled.
-pub(super) fn studies() -> Vec<Study> {
+pub(crate) fn studies() -> Vec<Study> {
     let study = |case: &'static Case| {
         Study::new(case.trials, DURATION_S.0 as u64, |trial| measure(case, trial), |trials| conclude(case, trials))
     };

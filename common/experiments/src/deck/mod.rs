@@ -20,20 +20,23 @@ mod unseen;
 use crate::Study;
 use scenario::{SCENARIOS, Scenario};
 
-pub(crate) const TITLE: &str = "The project's own estimator: every paper's scenario, one configuration";
+pub(crate) const SCENARIOS_TITLE: &str = "The project's own estimator: every paper's scenario, one configuration";
+pub(crate) const UNSEEN_TITLE: &str = "The project's own estimator: motion that does not show the installation";
+pub(crate) const TROUBLES_TITLE: &str = "The project's own estimator: what goes wrong on a ship";
+pub(crate) const COUPLING_TITLE: &str = "The project's own estimator: flexure in step with the ship";
+pub(crate) const PARTS_TITLE: &str = "The project's own estimator: what each part is good for";
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The studies of this experiment. A quick run takes some scenarios only, and shortens them.
-pub(crate) fn studies() -> Vec<Study> {
-    let mut studies: Vec<Study> = SCENARIOS.iter().map(study).collect();
-    studies.push(spikes::study());
-    studies.extend(unseen::studies());
-    studies.extend(ablation::studies());
-    studies.extend(coupled::studies());
-    studies.extend(troubles::studies());
-    studies
+/// The papers' scenarios and spikes. A quick run takes some scenarios only, and shortens them.
+pub(crate) fn scenarios() -> Vec<Study> {
+    SCENARIOS.iter().map(study).chain([spikes::study()]).collect()
 }
+
+pub(crate) use ablation::studies as parts;
+pub(crate) use coupled::studies as coupling;
+pub(crate) use troubles::studies as troubles;
+pub(crate) use unseen::studies as unseen;
 
 fn study(scenario: &'static Scenario) -> Study {
     Study::new(

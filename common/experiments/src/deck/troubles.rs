@@ -183,7 +183,7 @@ fn thinned(points: &[Point]) -> Vec<Point> {
     points.iter().filter(is_due).copied().collect()
 }
 
-pub(super) fn studies() -> Vec<Study> {
+pub(crate) fn studies() -> Vec<Study> {
     let study = |case: &'static Case| {
         let trials = Trials { full: 8, quick: 1 };
         let conclude = |trials: &[Measured]| conclude::conclude(case, trials);

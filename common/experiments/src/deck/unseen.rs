@@ -67,7 +67,7 @@ struct Measured {
     own: Option<Paired>,
 }
 
-pub(super) fn studies() -> Vec<Study> {
+pub(crate) fn studies() -> Vec<Study> {
     let study = |case: &'static Case| {
         let trials = Trials { full: 16, quick: 2 };
         Study::new(trials, DURATION_S.0 as u64, |trial| measure(case, trial), |trials| conclude(case, trials))
