@@ -41,3 +41,19 @@ impl FromStr for Selection {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_selects_one_a_group_its_own_and_all_every_experiment() {
+        let count = |name: &str| name.parse::<Selection>().unwrap().experiments().count();
+        assert_eq!((count("idam"), count("deck-parts"), count("all")), (1, 1, EXPERIMENTS.len()));
+        assert_eq!(count("deck"), EXPERIMENTS.iter().filter(|experiment| experiment.name.starts_with("deck-")).count());
+        let refused = "decks".parse::<Selection>().unwrap_err().to_string();
+        assert!(["deck,", "deck-coupling", "idam"].iter().all(|name| refused.contains(name)), "{refused}");
+        assert_eq!(refused.matches("deck,").count(), 1);
+    }
+}
