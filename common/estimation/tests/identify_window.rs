@@ -93,12 +93,13 @@ fn points_are_thinned_by_data_time_at_any_rate() {
 }
 
 #[test]
-fn a_gap_or_a_new_epoch_starts_anew() {
+fn a_gap_or_a_new_epoch_or_an_invalid_solution_starts_anew() {
     let within = |pair: &ImuPair, from: f64, to: f64| (from..to).contains(&unit::seconds(pair.header.time_ns));
     type Spoil = fn(&mut ImuPair, &mut Solution);
-    let spoils: [(Spoil, f64); 3] = [
+    let spoils: [(Spoil, f64); 4] = [
         (|pair, _| pair.flags |= Flags::GAP, 15.5),
         (|pair, _| pair.flags |= Flags::SILENT, 15.5),
+        (|_, solution| solution.valid = 0, 15.02),
         (|pair, _| pair.attitude_s = [f64::NAN; 4], 15.5),
     ];
     for (number, (spoil, end)) in spoils.into_iter().enumerate() {
@@ -125,8 +126,8 @@ fn a_gap_or_a_new_epoch_starts_anew() {
 
 /// Until the installation is known there is no solution; the gyros' motion of that time is as good as any.
 #[test]
-fn data_from_before_the_first_solution_count() {
-    let mut rvm = Windowed::new(SETTINGS);
+fn data_from_before_the_first_solution_count_where_a_filter_runs_over_them_again() {
+    let mut rvm = Windowed::new(Settings { provisional: true, ..SETTINGS });
     let found = sets(&mut rvm, &mut scene(0.02, 5).run(), 24.0, |pair, solution| {
         solution.valid = u32::from(unit::seconds(pair.header.time_ns) > 15.0);
         true

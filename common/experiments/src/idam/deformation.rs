@@ -193,7 +193,7 @@ fn conclude(scenario: &Scenario, trials: &[Measured]) -> Findings {
 fn ratios(scenario: &Scenario, trials: &[Measured]) -> Vec<Row> {
     let own = "the paper has no filter with the true parameters";
     let order = "Rivals are told apart by the flexure that they identify, and the chain hardly depends on it.";
-    let near = "The static part is found from the ship's rotation; a safe flexure model costs a tenth with gyros alone, a quarter with a lever arm that bends.";
+    let near = "The static part is found from the ship's rotation; a safe flexure model costs up to a tenth with gyros alone, a quarter with a lever arm that bends.";
     [
         ("so3-rvm", "so3-true", Published::Nothing(own.into()), near),
         ("so3-whittle", "so3-true", Published::Nothing(own.into()), near),
