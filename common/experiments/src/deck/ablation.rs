@@ -1,7 +1,7 @@
 //! What each part of the estimator is good for: taken out in turn, on the same data.
 
-use super::claims::judged;
-use super::measure::SPANS;
+use super::claims::{SPAN_NAMES, judged};
+use super::measure::{SPANS, paired};
 use super::method::{self, run_blind};
 use super::paired::{Paired, of_one, ratio};
 use super::scenario::{SCENARIOS, Scenario};
@@ -48,9 +48,6 @@ const PLACES: [&str; 8] =
 /// The one of a quick run.
 const QUICK: &str = "003";
 
-/// Key and name of the spans.
-const NAMES: [(&str, &str); 2] = [("late", "after 5 min"), ("early", "from 1 to 5 min")];
-
 /// A trial: by part and span, the whole estimator beside the one without the part, and the share of errors that the latter's range holds.
 type Measured = Option<Vec<([Option<Paired>; 2], f64)>>;
 
@@ -74,8 +71,7 @@ fn measure(scenario: &Scenario, trial: &Trial) -> Result<Measured, Fault> {
         let changed = default.with(part.remove);
         let other =
             if part.of_data { run_blind(&changed, &Data::simulate(&changed)?) } else { run_blind(&changed, &data) };
-        let paired = SPANS.map(|span| Paired::of(whole.over(span.clone()), other.over(span)));
-        Ok((paired, mean(&other.over(*SPANS[1].start()..).coverage(|point| point.range))))
+        Ok((paired(&whole, &other), mean(&other.over(*SPANS[1].start()..).coverage(|point| point.range))))
     };
     Ok(Some(PARTS.iter().map(without).collect::<Result<_, Fault>>()?))
 }
@@ -97,7 +93,7 @@ fn conclude(scenario: &Scenario, trials: &[Measured]) -> Findings {
 
 fn cost_row(scenario: &Scenario, part: &Part, span: usize, pairs: &[Paired]) -> Row {
     const ALL: &[usize] = &[0, 1, 2];
-    let (key, name) = NAMES[span];
+    let (key, name) = SPAN_NAMES[span];
     let values: Vec<f64> = pairs.iter().map(|pair| 1.0 / of_one(pair, ALL)).collect();
     let claim = claim(scenario, part, key, &format!("RMSE over that of the whole, {name}"), Bound::Value(1.0));
     judged(claim, 1.0 / ratio(pairs, ALL), &values)

@@ -12,8 +12,8 @@ pub(super) const POOLS: [(&str, &[usize]); 4] = [("x", &[0]), ("y", &[1]), ("z",
 pub(super) const ENDS: [(&str, &str); 2] = [("lower", ", 95 % interval from"), ("upper", ", 95 % interval to")];
 /// What an interval is made of.
 pub(super) const BOOTSTRAP: &str = "By the bootstrap over trials.";
-/// The spans, in their order.
-const SPANS: [(&str, &str); 2] = [("late", "after 5 min"), ("early", "from 1 to 5 min")];
+/// Key and name of the spans of [`super::measure::SPANS`], in their order.
+pub(super) const SPAN_NAMES: [(&str, &str); 2] = [("late", "after 5 min"), ("early", "from 1 to 5 min")];
 /// What a ratio may be from 1 to 5 minutes.
 const EARLY: f64 = 1.25;
 
@@ -21,10 +21,10 @@ const EARLY: f64 = 1.25;
 pub(super) fn conclude(scenario: &Scenario, trials: &[Option<Measured>]) -> Findings {
     let trials: Vec<&Measured> = trials.iter().flatten().collect();
     let mut rows = Vec::new();
-    for span in (0..SPANS.len()).filter(|_| !trials.is_empty()) {
+    for span in (0..SPAN_NAMES.len()).filter(|_| !trials.is_empty()) {
         rows.extend(ratio_rows(scenario, &trials, span));
     }
-    for span in (0..SPANS.len()).filter(|_| !trials.is_empty()) {
+    for span in (0..SPAN_NAMES.len()).filter(|_| !trials.is_empty()) {
         rows.extend(error_rows(scenario, &pairs(&trials, span), span));
     }
     Findings { rows, figures: Vec::new() }
@@ -56,7 +56,7 @@ pub(super) fn largest_of(figures: impl Iterator<Item = (f64, u64)>) -> String {
 /// The ratios about each axis and over all, then both ends of their intervals.
 fn ratio_rows(scenario: &Scenario, trials: &[&Measured], span: usize) -> Vec<Row> {
     let pairs = pairs(trials, span);
-    let (key, name) = SPANS[span];
+    let (key, name) = SPAN_NAMES[span];
     let claim = |end: &str, what: &str, axis: &str, paper: Published, why: String| Claim {
         id: format!("deck/{}/{key}/{end}/{axis}", scenario.id),
         table: format!("{}: RMSE over that of the same estimator told the truth, same data", scenario.title),
@@ -99,7 +99,7 @@ const KINDS: [Kind; 4] = [
 ];
 
 fn error_rows(scenario: &Scenario, pairs: &[Paired], span: usize) -> Vec<Row> {
-    let (key, name) = SPANS[span];
+    let (key, name) = SPAN_NAMES[span];
     let size = scenario.unit.size;
     let row = |(id, what, figure): Kind, axis: usize| {
         let sane = scenario.sane.filter(|_| (id, span) == ("rmse", 0));

@@ -64,7 +64,8 @@ fn worst(values: [f64; 3], of: [f64; 3]) -> f64 {
     [0, 1, 2].map(|axis| values[axis].abs() / of[axis]).into_iter().fold(0.0, f64::max)
 }
 
-fn paired(ours: &Track, other: &Track) -> [Option<Paired>; 2] {
+/// Two methods over the same data, by span.
+pub(super) fn paired(ours: &Track, other: &Track) -> [Option<Paired>; 2] {
     SPANS.map(|span| Paired::of(ours.over(span.clone()), other.over(span)))
 }
 
