@@ -125,6 +125,37 @@ impl Flexure {
     }
 }
 
+/// The flexure of a hull about the axes of m: a mode each, and beside it a second where the hull has one. The flexure is their sum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hull {
+    /// The mode about each axis, the slower one where there are two.
+    pub modes: [Flexure; 3],
+    /// The second mode.
+    pub second: [Option<Flexure>; 3],
+}
+
+impl From<[Flexure; 3]> for Hull {
+    fn from(modes: [Flexure; 3]) -> Self {
+        Self { modes, second: [None; 3] }
+    }
+}
+
+impl Hull {
+    /// All modes.
+    pub fn all(&self) -> impl Iterator<Item = &Flexure> {
+        self.modes.iter().chain(self.second.iter().flatten())
+    }
+
+    /// The same with standard deviations as [`Flexure::bounded`] keeps them; a second mode may be as small as it likes.
+    pub fn bounded(self, least: f64, most: f64) -> Self {
+        let second = |mode: Flexure| mode.bounded(0.0, most);
+        Self {
+            modes: self.modes.map(|mode| mode.bounded(least, most)),
+            second: self.second.map(|mode| mode.map(second)),
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

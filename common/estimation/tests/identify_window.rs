@@ -21,6 +21,7 @@ const SETTINGS: Settings = Settings {
     method: Method::Rvm,
     safety: true,
     provisional: false,
+    second_mode: false,
     area: 3,
 };
 

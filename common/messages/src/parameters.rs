@@ -1,6 +1,7 @@
 use crate::{Header, message};
 
-/// The flexure model of an area, per axis of m: `x'' + 2 mu x' + b^2 x = 2 b sigma sqrt(mu) w`, w white of unit density.
+/// The flexure model of an area, per axis of m: `x'' + 2 mu x' + b^2 x = 2 b sigma sqrt(mu) w`, w white of unit density; where the hull has a second mode about an
+/// axis, the flexure is the sum of two such.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FlexureParams {
@@ -24,10 +25,16 @@ pub struct FlexureParams {
     pub ln_b_sd: [f64; 3],
     /// Standard deviations of `ln sigma`.
     pub ln_sigma_sd: [f64; 3],
+    /// Damping of the second mode, 1/s.
+    pub second_mu: [f64; 3],
+    /// Its natural frequency, rad/s.
+    pub second_b: [f64; 3],
+    /// Its standard deviation, rad; 0 where there is no second mode.
+    pub second_sigma: [f64; 3],
     /// Number of 10 Hz points in the window.
     pub points: u32,
     /// Index of the area.
     pub area: u32,
 }
 
-message!(FlexureParams, "deckflex/FlexureParams/1");
+message!(FlexureParams, "deckflex/FlexureParams/2");

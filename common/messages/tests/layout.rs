@@ -20,8 +20,8 @@ fn layouts_are_as_published() {
     layout!(MainAttitude, "deckflex/MainAttitude/1", 136, q @ 80, sigma @ 112);
     layout!(ImuPair, "deckflex/ImuPair/1", 328, epoch @ 80, interval_ns @ 88, dtheta_m @ 96, dtheta_s @ 144, attitude_m @ 192,
         attitude_s @ 224, ins @ 256, ins_sigma @ 288, disturbance @ 312, area @ 320, flags @ 324);
-    layout!(FlexureParams, "deckflex/FlexureParams/1", 256, id @ 80, window_begin_ns @ 88, effective_from_ns @ 96, mu @ 104,
-        b @ 128, sigma @ 152, ln_sigma_sd @ 224, points @ 248, area @ 252);
+    layout!(FlexureParams, "deckflex/FlexureParams/2", 328, id @ 80, window_begin_ns @ 88, effective_from_ns @ 96, mu @ 104,
+        b @ 128, sigma @ 152, ln_sigma_sd @ 224, second_mu @ 248, second_sigma @ 296, points @ 320, area @ 324);
     layout!(Solution, "deckflex/Solution/2", 736, params_id @ 80, epoch @ 88, q @ 96, static_q @ 128, constant @ 160, phi @ 192,
         dynamic @ 216, rate @ 240, drift @ 264, scale @ 288, covariance @ 336, static_covariance @ 408, dynamic_covariance @ 480,
         registered @ 552, registered_sigma @ 584, delay @ 608, skew_sigma @ 632, range @ 640, deck @ 664, deck_sigma @ 696, area @ 720, valid @ 724, flags @ 728);

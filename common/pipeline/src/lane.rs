@@ -215,8 +215,8 @@ fn settings(configuration: &Configuration, area: usize) -> estimator::Settings {
         installation: area
             .installation
             .map(|told| estimator::Installation { rotation: told.rotation, sigma: told.sigma }),
-        flexure: match area.identifier.method {
-            IdentifierMethod::Fixed(flexure) => Some(flexure),
+        hull: match area.identifier.method {
+            IdentifierMethod::Fixed(flexure) => Some(flexure.into()),
             IdentifierMethod::Learnt(_) => None,
         },
     }
@@ -235,6 +235,7 @@ pub fn identifier(configuration: &Configuration, area: usize) -> Box<dyn Identif
             method,
             safety: told.safety,
             provisional: configuration.areas[area].estimator.matching == MatchingMethod::Deck,
+            second_mode: configuration.areas[area].estimator.matching == MatchingMethod::Deck,
             area: area as u32,
         })),
         IdentifierMethod::Fixed(_) => Box::new(Fixed),

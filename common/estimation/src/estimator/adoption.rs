@@ -1,7 +1,7 @@
 //! Parameter sets that wait for the data time from which they are in force.
 
 use super::model;
-use crate::flexure::Flexure;
+use crate::flexure::{Flexure, Hull};
 use messages::FlexureParams;
 use std::collections::VecDeque;
 
@@ -25,7 +25,7 @@ impl Adoption {
     /// Takes an offer, unless it is known or unsound; `true` if it came after its time.
     pub(super) fn offer(&mut self, params: FlexureParams) -> bool {
         let known = |other: &FlexureParams| other.id == params.id;
-        if !model(&params).iter().all(Flexure::is_sound) {
+        if !model(&params).all().all(Flexure::is_sound) {
             return false;
         }
         if self.params.as_ref().is_some_and(known) || self.waiting.iter().any(known) {
@@ -58,7 +58,7 @@ impl Adoption {
     }
 
     /// The flexure model in force.
-    pub(super) fn flexure(&self) -> Option<[Flexure; 3]> {
+    pub(super) fn hull(&self) -> Option<Hull> {
         self.params.as_ref().map(model)
     }
 }

@@ -115,7 +115,7 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
             grade: area.grade,
             accel: self.settings.accel,
             lever_arm: self.settings.lever_arm,
-            flexure: self.adoption.flexure().or(area.flexure).unwrap_or(broad),
+            flexure: self.adoption.hull().or(area.hull).map_or(broad, |hull| hull.modes),
             rotation,
             covariance,
         };
@@ -235,15 +235,15 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Estimator for Matched<M, N,
             None => self.register(pair),
             Some(_) if pair.flags.contains(Flags::GAP) => flags |= Flags::COASTING,
             Some(running) => {
-                if let Some(flexure) = self.adoption.flexure() {
-                    running.model.set_flexure(flexure);
+                if let Some(hull) = self.adoption.hull() {
+                    running.model.set_flexure(hull.modes);
                 }
                 if running.step(pair, &self.settings.filter, period_s).is_none() {
                     self.reset();
                 }
             }
         }
-        if self.adoption.id() == 0 && self.settings.area.flexure.is_none() {
+        if self.adoption.id() == 0 && self.settings.area.hull.is_none() {
             flags |= Flags::PRIOR;
         }
         if self.running.is_none() {

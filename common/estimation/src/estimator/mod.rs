@@ -7,7 +7,7 @@ mod matched;
 pub use deck::{DeckEstimator, DeckSettings};
 pub use matched::{MakeRegister, Matched, MatchedSettings};
 
-use crate::flexure::Flexure;
+use crate::flexure::{Flexure, Hull};
 use crate::matching::so3::Grade;
 use frames::{Main, Nav, Rot, Sub, unit};
 use messages::{FlexureParams, ImuPair, Solution};
@@ -45,12 +45,19 @@ pub struct Settings {
     /// The surveyed installation, if there is one.
     pub installation: Option<Installation>,
     /// A flexure model known beforehand; otherwise a broad guess is made at registration.
-    pub flexure: Option<[Flexure; 3]>,
+    pub hull: Option<Hull>,
 }
 
 /// The flexure model of a parameter set.
-pub fn model(params: &FlexureParams) -> [Flexure; 3] {
-    std::array::from_fn(|i| Flexure { mu: params.mu[i], b: params.b[i], sigma: params.sigma[i] })
+pub fn model(params: &FlexureParams) -> Hull {
+    let FlexureParams { mu, b, sigma, second_mu, second_b, second_sigma, .. } = params;
+    Hull {
+        modes: std::array::from_fn(|i| Flexure { mu: mu[i], b: b[i], sigma: sigma[i] }),
+        second: std::array::from_fn(|i| {
+            let second = Flexure { mu: second_mu[i], b: second_b[i], sigma: second_sigma[i] };
+            (second.sigma != 0.0).then_some(second)
+        }),
+    }
 }
 
 fn row_major(m: &Matrix3<f64>) -> [f64; 9] {

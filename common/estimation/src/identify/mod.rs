@@ -79,6 +79,8 @@ pub struct Settings {
     /// Whether the filter will run over the first minutes again with better parameters: then a short window may be believed where it shows an
     /// oscillation, for what it gets wrong is undone.
     pub provisional: bool,
+    /// Whether a second mode is looked for in windows that are not short: only where the filter has the states for it.
+    pub second_mode: bool,
     /// Index of the area, copied into the parameters.
     pub area: u32,
 }
@@ -94,6 +96,7 @@ impl Default for Settings {
             method: Method::Rvm,
             safety: true,
             provisional: false,
+            second_mode: false,
             area: 0,
         }
     }

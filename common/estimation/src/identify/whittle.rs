@@ -9,7 +9,8 @@
 //! | `ln Q` | none |
 //! | `ln n`, the white noise | none; without this parameter the damping takes the noise's place (15 % at 30 dB, many times at 10 dB) |
 //!
-//! `-ln L = sum w (ln S + I / S)`, a generalised linear model of the gamma family; Fisher scoring with Levenberg's damping.
+//! `-ln L = sum w (ln S + I / S)`, a generalised linear model of the gamma family; Fisher scoring with Levenberg's damping. A hull may have two modes about
+//! an axis: then `S` is the sum of two densities and the noise, with three parameters more.
 
 use super::axis::Identified;
 use super::bound::Band;
@@ -17,7 +18,7 @@ use super::periodogram::{Periodogram, Taper, density, gain};
 use super::refinement::{DAMPING, FREQUENCY, MEDIANS, PRIOR_SD};
 use super::series::{Kind, Series};
 use crate::flexure::Flexure;
-use nalgebra::{Matrix4, Vector4};
+use nalgebra::{SMatrix, SVector};
 
 /// What is fitted and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,22 +52,45 @@ const PEAK_DAMPING: f64 = 0.12;
 const PEAK_WIDTH: usize = 15;
 /// Range of the noise's logarithm about the level of the highest frequencies.
 const FLOOR_RANGE: f64 = 25.0;
+/// Parameters of a mode, then of a hull of one mode and of two, with the noise.
+const MODE: usize = 3;
+const ONE: usize = MODE + 1;
+const TWO: usize = 2 * MODE + 1;
+/// What a second mode is started with: its share of the power, and damping over natural frequency.
+const SECOND_SHARE: f64 = 0.5;
+const SECOND_DAMPING: f64 = 0.3;
+/// The natural frequencies that it is started at, rad/s.
+const SECOND_STARTS: [f64; 5] = [0.1, 0.3, 0.8, 2.0, 4.0];
+/// Twice the logarithm of a ratio of posterior densities that leaves no doubt of a second mode: of hundreds of windows, each has some chance to mislead.
+const SECOND_DECISIVE: f64 = 30.0;
+
+/// The logarithms of damping, natural frequency and density of each mode, and of the noise.
+type Logs<const N: usize> = SVector<f64, N>;
 
 /// Identifies an axis; `None` if the band is empty or nothing converges.
 pub fn identify(series: &Series, settings: &Settings) -> Option<Identified> {
     let fit = Fit::new(series, settings)?;
     let (logs, _) = fit.best()?;
-    let mut information = fit.scores(&logs).1;
-    if !settings.floor {
-        information[(3, 3)] = 1.0;
+    let [found] = fit.identified(&logs, series)?[..] else { return None };
+    Some(found)
+}
+
+/// Identifies an axis that has two modes, the slower one first; `None` if the data do not demand the second.
+pub fn identify_two(series: &Series) -> Option<[Identified; 2]> {
+    let fit = Fit::new(series, &Settings::of(series))?;
+    let (one, cost) = fit.best()?;
+    let (two, least) = fit.second(&one)?;
+    if 2.0 * (cost - least) < SECOND_DECISIVE {
+        return None;
     }
-    let covariance = information.try_inverse()?.fixed_view::<3, 3>(0, 0).into_owned();
-    Identified::new(flexure(&logs), &covariance, series.length_s()).filter(|found| found.flexure.is_sound())
+    let mut found: [Identified; 2] = fit.identified(&two, series)?.try_into().ok()?;
+    found.sort_by(|one, other| one.flexure.b.total_cmp(&other.flexure.b));
+    Some(found)
 }
 
 /// A model that was fitted to a series.
 #[derive(Clone, Copy, Debug)]
-pub struct Fitted(Vector4<f64>);
+pub struct Fitted(Logs<ONE>);
 
 /// The most probable model of a series; `None` if the band is empty or nothing converges.
 pub fn fitted(series: &Series) -> Option<Fitted> {
@@ -103,9 +127,12 @@ struct Fit {
     held: bool,
 }
 
-fn flexure(logs: &Vector4<f64>) -> Flexure {
-    let (mu, b) = (logs[0].exp(), logs[1].exp());
-    Flexure { mu, b, sigma: (logs[2].exp() / (4.0 * mu * b * b)).sqrt() }
+/// The modes of a hull.
+fn modes<const N: usize>(logs: &Logs<N>) -> impl Iterator<Item = Flexure> + '_ {
+    (0..N - 1).step_by(MODE).map(|k| {
+        let (mu, b) = (logs[k].exp(), logs[k + 1].exp());
+        Flexure { mu, b, sigma: (logs[k + 2].exp() / (4.0 * mu * b * b)).sqrt() }
+    })
 }
 
 impl Fit {
@@ -122,7 +149,7 @@ impl Fit {
     }
 
     /// The best logarithms from all starts, and their cost.
-    fn best(&self) -> Option<(Vector4<f64>, f64)> {
+    fn best(&self) -> Option<(Logs<ONE>, f64)> {
         let starts = STARTS.into_iter().chain(self.peak());
         let found = starts.filter_map(|(mu, b)| self.climb(self.start(mu, b)));
         found.min_by(|one, other| one.1.total_cmp(&other.1))
@@ -142,30 +169,67 @@ impl Fit {
         Some((PEAK_DAMPING, self.data.frequencies[place + PEAK_WIDTH / 2]))
     }
 
-    /// The logarithms of damping, frequency, density, and noise; the density such that the total power is right.
-    fn start(&self, mu: f64, b: f64) -> Vector4<f64> {
+    /// Damping and frequency as told, the density such that the total power is right.
+    fn start(&self, mu: f64, b: f64) -> Logs<ONE> {
         let unit = Flexure { mu, b, sigma: 1.0 };
-        let model: f64 = self.lines().map(|(w, gain, _)| density(&unit, gain, self.step_s, w).0).sum();
-        let ratio = self.data.power.iter().sum::<f64>() / model;
-        Vector4::new(mu.ln(), b.ln(), (unit.density() * ratio).ln(), (0.5 * self.floor()).ln())
+        let ratio = self.data.power.iter().sum::<f64>() / self.power(&unit);
+        Logs::from([mu.ln(), b.ln(), (unit.density() * ratio).ln(), (0.5 * self.floor()).ln()])
     }
 
-    fn away(&self, logs: &Vector4<f64>) -> Vector4<f64> {
+    /// The power of a mode over all lines.
+    fn power(&self, mode: &Flexure) -> f64 {
+        self.lines().map(|(w, gain, _)| density(mode, gain, self.step_s, w).0).sum()
+    }
+
+    /// The best logarithms with a second mode beside the one found, and their cost.
+    fn second(&self, one: &Logs<ONE>) -> Option<(Logs<TWO>, f64)> {
+        let total = self.data.power.iter().sum::<f64>();
+        let start = |b: f64| {
+            let unit = Flexure { mu: SECOND_DAMPING * b, b, sigma: 1.0 };
+            let density = unit.density() * SECOND_SHARE * total / self.power(&unit);
+            Logs::from([one[0], one[1], one[2], unit.mu.ln(), unit.b.ln(), density.ln(), one[3]])
+        };
+        let found = SECOND_STARTS.into_iter().filter_map(|b| self.climb(start(b)));
+        found.min_by(|one, other| one.1.total_cmp(&other.1))
+    }
+
+    /// The modes with what is known of them.
+    fn identified<const N: usize>(&self, logs: &Logs<N>, series: &Series) -> Option<Vec<Identified>> {
+        let mut information = self.scores(logs).1;
+        if !self.settings.floor {
+            information[(N - 1, N - 1)] = 1.0;
+        }
+        let covariance = information.try_inverse()?;
+        let mode = |(k, flexure): (usize, Flexure)| {
+            let of_mode = covariance.fixed_view::<MODE, MODE>(k * MODE, k * MODE).into_owned();
+            Identified::new(flexure, &of_mode, series.length_s()).filter(|found| found.flexure.is_sound())
+        };
+        modes(logs).enumerate().map(mode).collect()
+    }
+
+    /// How far damping and frequency of each mode are from their priors' medians, in terms of the priors' variance.
+    fn away<const N: usize>(&self, logs: &Logs<N>) -> Logs<N> {
         let share = if self.settings.priors { 1.0 / (PRIOR_SD * PRIOR_SD) } else { 0.0 };
-        Vector4::new(share * (logs[0] - MEDIANS.0.ln()), share * (logs[1] - MEDIANS.1.ln()), 0.0, 0.0)
+        let mut away = Logs::zeros();
+        for k in (0..N - 1).step_by(MODE) {
+            away[k] = share * (logs[k] - MEDIANS.0.ln());
+            away[k + 1] = share * (logs[k + 1] - MEDIANS.1.ln());
+        }
+        away
     }
 
-    fn noise(&self, logs: &Vector4<f64>) -> f64 {
-        if self.settings.floor { logs[3].exp() } else { 0.0 }
+    fn noise<const N: usize>(&self, logs: &Logs<N>) -> f64 {
+        if self.settings.floor { logs[N - 1].exp() } else { 0.0 }
     }
 
     /// Minus the logarithm of the posterior density.
-    fn cost(&self, logs: &Vector4<f64>) -> f64 {
-        let (model, noise) = (flexure(logs), self.noise(logs));
+    fn cost<const N: usize>(&self, logs: &Logs<N>) -> f64 {
+        let noise = self.noise(logs);
+        let modes: Vec<Flexure> = modes(logs).collect();
         let misfit: f64 = self
             .lines()
             .map(|(w, gain, power)| {
-                let level = density(&model, gain, self.step_s, w).0 + noise;
+                let level = modes.iter().map(|mode| density(mode, gain, self.step_s, w).0).sum::<f64>() + noise;
                 level.ln() + power / level
             })
             .sum();
@@ -175,20 +239,29 @@ impl Fit {
     }
 
     /// Direction downhill and information.
-    fn scores(&self, logs: &Vector4<f64>) -> (Vector4<f64>, Matrix4<f64>) {
-        let (model, noise) = (flexure(logs), self.noise(logs));
-        let (mut downhill, mut information) = (Vector4::zeros(), Matrix4::zeros());
+    fn scores<const N: usize>(&self, logs: &Logs<N>) -> (Logs<N>, SMatrix<f64, N, N>) {
+        let noise = self.noise(logs);
+        let modes: Vec<Flexure> = modes(logs).collect();
+        let (mut downhill, mut information) = (Logs::<N>::zeros(), SMatrix::<f64, N, N>::zeros());
         for (w, gain, power) in self.lines() {
-            let (flexible, slopes) = density(&model, gain, self.step_s, w);
-            let level = flexible + noise;
-            let slope = Vector4::new(slopes[0], slopes[1], slopes[2], noise) / level;
+            let mut slope = Logs::<N>::zeros();
+            let mut level = noise;
+            slope[N - 1] = noise;
+            for (mode, k) in modes.iter().zip((0..).step_by(MODE)) {
+                let (flexible, slopes) = density(mode, gain, self.step_s, w);
+                level += flexible;
+                slope.fixed_rows_mut::<MODE>(k).copy_from_slice(&slopes);
+            }
+            slope /= level;
             downhill += slope * (power / level - 1.0);
             information += slope * slope.transpose();
         }
         let mut information = information * self.data.weight;
         if self.settings.priors {
-            information[(0, 0)] += 1.0 / (PRIOR_SD * PRIOR_SD);
-            information[(1, 1)] += 1.0 / (PRIOR_SD * PRIOR_SD);
+            for k in (0..N - 1).step_by(MODE) {
+                information[(k, k)] += 1.0 / (PRIOR_SD * PRIOR_SD);
+                information[(k + 1, k + 1)] += 1.0 / (PRIOR_SD * PRIOR_SD);
+            }
         }
         let mut downhill = downhill * self.data.weight - self.away(logs);
         if self.held {
@@ -200,15 +273,15 @@ impl Fit {
     }
 
     /// The logarithms at the end, and their cost.
-    fn climb(&self, mut logs: Vector4<f64>) -> Option<(Vector4<f64>, f64)> {
+    fn climb<const N: usize>(&self, mut logs: Logs<N>) -> Option<(Logs<N>, f64)> {
         let floor = self.floor().ln();
-        let bounded = |logs: Vector4<f64>| {
-            Vector4::new(
-                logs[0].clamp(DAMPING.0.ln(), DAMPING.1.ln()),
-                logs[1].clamp(FREQUENCY.0.ln(), FREQUENCY.1.ln()),
-                logs[2],
-                logs[3].clamp(floor - FLOOR_RANGE, floor + 1.0),
-            )
+        let bounded = |mut logs: Logs<N>| {
+            for k in (0..N - 1).step_by(MODE) {
+                logs[k] = logs[k].clamp(DAMPING.0.ln(), DAMPING.1.ln());
+                logs[k + 1] = logs[k + 1].clamp(FREQUENCY.0.ln(), FREQUENCY.1.ln());
+            }
+            logs[N - 1] = logs[N - 1].clamp(floor - FLOOR_RANGE, floor + 1.0);
+            logs
         };
         let mut cost = self.cost(&logs);
         let mut damping = 1e-3;
@@ -218,8 +291,8 @@ impl Fit {
             while damping < 1e8 {
                 // The last term keeps a noise that cannot be seen where it is.
                 let damped = information
-                    + Matrix4::from_diagonal(&information.diagonal()) * damping
-                    + Matrix4::identity() * 1e-9;
+                    + SMatrix::<f64, N, N>::from_diagonal(&information.diagonal()) * damping
+                    + SMatrix::<f64, N, N>::identity() * 1e-9;
                 let step = damped.cholesky()?.solve(&downhill).map(|s| s.clamp(-LONGEST, LONGEST));
                 let next = bounded(logs + step);
                 let next_cost = self.cost(&next);

@@ -4,9 +4,10 @@ use super::chain::{Anchor, Chain};
 use super::change::changed;
 use super::safety::{SHORT_S, is_not_slow, safe};
 use super::series::{Kind, Series};
+use super::whittle;
 use super::window::Window;
 use crate::Identifier;
-use crate::flexure::Flexure;
+use crate::flexure::{Flexure, Hull};
 use frames::unit;
 use messages::{FlexureParams, Header, ImuPair, Solution, Stamps};
 
@@ -14,6 +15,13 @@ use messages::{FlexureParams, Header, ImuPair, Solution, Stamps};
 const GUARDED_S: f64 = 120.0;
 /// By how much the variance may grow before a re-built window is thought to be worse.
 const TOLERATED: f64 = 1.05;
+
+/// What was found about one axis.
+#[derive(Clone, Copy)]
+struct Axis {
+    mode: Identified,
+    second: Option<Identified>,
+}
 
 /// The slow identifier: a window of data, rebuilt with the latest constant, each axis identified by the method of the settings,
 /// and the result made safe if they say so.
@@ -45,26 +53,37 @@ impl Windowed {
         }
     }
 
-    fn identify(&self, chain: &Chain) -> Option<[Identified; 3]> {
+    /// The modes about each axis of m.
+    fn identify(&self, chain: &Chain) -> Option<[Axis; 3]> {
         let Settings { method, dictionary, .. } = self.settings;
-        let series = |values| Series { kind: Kind::Rates, values, step_s: chain.step_s };
-        let solver = method.solver(&series(&chain.rates[0]), dictionary);
-        let [x, y, z] = &chain.rates;
-        Some([solver.solve(&series(x))?, solver.solve(&series(y))?, solver.solve(&series(z))?])
+        let [x, y, z] = chain.rates.each_ref().map(|values| Series { kind: Kind::Rates, values, step_s: chain.step_s });
+        let solver = method.solver(&x, dictionary);
+        let looked_for = self.settings.second_mode && self.window.length_s() > SHORT_S;
+        let modes = |series: &Series| {
+            let two = if looked_for { whittle::identify_two(series) } else { None };
+            match two {
+                Some([mode, second]) => Some(Axis { mode, second: Some(second) }),
+                None => solver.solve(series).map(|mode| Axis { mode, second: None }),
+            }
+        };
+        Some([modes(&x)?, modes(&y)?, modes(&z)?])
     }
 
     /// What a filter gets.
-    fn models(&self, axes: &[Identified; 3], chain: &Chain) -> [Flexure; 3] {
+    fn hull(&self, axes: &[Axis; 3], chain: &Chain) -> Hull {
         let length_s = self.window.length_s();
-        let model = |(axis, values): (&Identified, &Vec<f64>)| {
+        let model = |found: &Identified, values: &[f64]| {
             if !self.settings.safety {
-                return axis.flexure;
+                return found.flexure;
             }
             let series = Series { kind: Kind::Rates, values, step_s: chain.step_s };
             let believed = self.settings.provisional && length_s <= SHORT_S && is_not_slow(&series);
-            safe(axis, if believed { f64::INFINITY } else { length_s })
+            safe(found, if believed { f64::INFINITY } else { length_s })
         };
-        [0, 1, 2].map(|i| model((&axes[i], &chain.rates[i])))
+        Hull {
+            modes: [0, 1, 2].map(|i| model(&axes[i].mode, &chain.rates[i])),
+            second: [0, 1, 2].map(|i| axes[i].second.map(|second| model(&second, &chain.rates[i]))),
+        }
     }
 }
 
@@ -89,22 +108,26 @@ impl Identifier for Windowed {
         }
         self.kept = Some(chain.end);
         let axes = self.identify(&chain)?;
-        let models = self.models(&axes, &chain);
-        if !models.iter().all(Flexure::is_sound) {
+        let hull = self.hull(&axes, &chain);
+        if !hull.all().all(Flexure::is_sound) {
             return None;
         }
+        let of_second = |number: fn(&Flexure) -> f64| hull.second.map(|mode| mode.as_ref().map_or(0.0, number));
         let points = self.window.points();
         Some(FlexureParams {
             header: Header { stamps: Stamps::default(), ..pair.header },
             id: pair.header.sequence,
             window_begin_ns: points.first()?.time_ns,
             effective_from_ns: pair.header.time_ns + unit::nanoseconds(self.settings.lead_s),
-            mu: models.map(|model| model.mu),
-            b: models.map(|model| model.b),
-            sigma: models.map(|model| model.sigma),
-            ln_mu_sd: axes.map(|axis| axis.ln_mu_sd),
-            ln_b_sd: axes.map(|axis| axis.ln_b_sd),
-            ln_sigma_sd: axes.map(|axis| axis.ln_sigma_sd),
+            mu: hull.modes.map(|mode| mode.mu),
+            b: hull.modes.map(|mode| mode.b),
+            sigma: hull.modes.map(|mode| mode.sigma),
+            ln_mu_sd: axes.map(|axis| axis.mode.ln_mu_sd),
+            ln_b_sd: axes.map(|axis| axis.mode.ln_b_sd),
+            ln_sigma_sd: axes.map(|axis| axis.mode.ln_sigma_sd),
+            second_mu: of_second(|mode| mode.mu),
+            second_b: of_second(|mode| mode.b),
+            second_sigma: of_second(|mode| mode.sigma),
             points: points.len() as u32,
             area: self.settings.area,
         })

@@ -8,13 +8,14 @@
 //! | static part S | 3 | `S_true = Exp(s) S`, in m | its rate |
 //! | rate of S | 3 | additive, rad/s | white noise `q` |
 //! | flexure theta, its rate | 3 + 3 | additive, rad, rad/s | second-order Gauss-Markov, exact |
+//! | second mode of the flexure, its rate | 3 + 3 | additive, rad, rad/s | the same; still where the hull has one mode |
 //! | constant N | 3 | `N_true = Exp(-eta) N`, in the main unit's starting axes | relative gyro errors |
 //! | relative gyro bias | 3 | additive, rad/s, in m | constant |
 //! | what it varies by in the run | 3 | additive, rad/s, in m | first-order Gauss-Markov |
 //! | relative scale and non-orthogonality | 6 | additive, symmetric matrix, in m | constant |
 //!
 //! Corrections to the paper: eq 29 lacks the derivative's dot; 39 states collapse to these because the units' single errors cannot be told
-//! apart; the Euler angles of eqs 22 and 35 give way to the rotation vector. The last nine states are ours: as process noise the scale errors of a
+//! apart; the Euler angles of eqs 22 and 35 give way to the rotation vector. Bias's variation, scale and second mode are ours: as process noise the scale errors of a
 //! coarse unit would have to be called white, which they are not, and its bias differs from pose to pose. The antisymmetric part of a triad's misalignment turns the unit as
 //! a whole, no data show it, and it widens the published covariance instead.
 //!
@@ -24,12 +25,12 @@
 pub use super::grade::{Grade, Gyro};
 use super::increment::Increment;
 use super::{Matching, Observation, Prediction, rows_of};
-use crate::flexure::Flexure;
+use crate::flexure::{Flexure, Hull};
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 /// Size of the error state.
-pub const STATES: usize = 27;
+pub const STATES: usize = 33;
 /// Places of the error states.
 pub mod place {
     /// Static part.
@@ -48,6 +49,10 @@ pub mod place {
     pub const WANDER: usize = 18;
     /// Relative scale and non-orthogonality: xx, yy, zz, xy, xz, yz.
     pub const SCALE: usize = 21;
+    /// Second mode of the flexure.
+    pub const SECOND: usize = 27;
+    /// Its rate.
+    pub const SECOND_RATE: usize = 30;
 }
 
 /// Covariance of the error state.
@@ -58,6 +63,12 @@ pub type ErrorState = SVector<f64, STATES>;
 pub type Rows = SMatrix<f64, 3, STATES>;
 /// How three components depend on the six of a symmetric matrix.
 pub type ByScale = SMatrix<f64, 3, 6>;
+
+/// Standard deviation of a second mode that the hull does not have, rad: with none at all the covariance would fade into the smallest numbers there are, and
+/// one of them comes out negative.
+const NO_MODE: f64 = 1e-12;
+/// Where angle and rate of the first and of the second mode stand.
+const MODES: [(usize, usize); 2] = [(place::FLEXURE, place::FLEXURE_RATE), (place::SECOND, place::SECOND_RATE)];
 
 /// Correlation time of the bias's variation in the run, s.
 const WANDER_S: f64 = 100.0;
@@ -96,11 +107,12 @@ impl Default for Since {
 #[derive(Clone, Debug)]
 pub struct So3 {
     grade: Grade,
-    flexure: [Flexure; 3],
+    hull: Hull,
     static_part: Rot<Main, Sub>,
     static_rate: Vec3<Main>,
-    theta: Vector3<f64>,
-    theta_rate: Vector3<f64>,
+    /// Of the first mode, then of the second.
+    theta: [Vector3<f64>; 2],
+    theta_rate: [Vector3<f64>; 2],
     constant: Rot<MainStart, SubStart>,
     bias: Vec3<Main>,
     wander: Vec3<Main>,
@@ -124,14 +136,14 @@ pub struct Ahead {
 
 impl So3 {
     /// A state at rest at the installation `static_part`, with a flexure model and a first idea of the relative gyro bias.
-    pub fn new(grade: Grade, flexure: [Flexure; 3], static_part: Rot<Main, Sub>, bias: Vec3<Main>) -> Self {
+    pub fn new(grade: Grade, hull: Hull, static_part: Rot<Main, Sub>, bias: Vec3<Main>) -> Self {
         Self {
             grade,
-            flexure,
+            hull,
             static_part,
             static_rate: Vec3::ZERO,
-            theta: Vector3::zeros(),
-            theta_rate: Vector3::zeros(),
+            theta: [Vector3::zeros(); 2],
+            theta_rate: [Vector3::zeros(); 2],
             constant: Rot::identity(),
             bias,
             wander: Vec3::ZERO,
@@ -144,8 +156,14 @@ impl So3 {
     }
 
     /// Replaces the flexure model from now on.
-    pub fn set_flexure(&mut self, flexure: [Flexure; 3]) {
-        self.flexure = flexure;
+    pub fn set_flexure(&mut self, hull: Hull) {
+        self.hull = hull;
+    }
+
+    /// The model that moves a mode about an axis: what is left of a second one that the hull is no longer believed to have goes the way of the first.
+    fn mode(&self, which: usize, axis: usize) -> Flexure {
+        let first = self.hull.modes[axis];
+        if which == 0 { first } else { self.hull.second[axis].unwrap_or(Flexure { sigma: NO_MODE, ..first }) }
     }
 
     /// Starts an epoch: the constant is defined by the deformation as it is believed to be now, which the attitudes show but for a `turn` of the
@@ -161,8 +179,9 @@ impl So3 {
         let mut transition = Covariance::identity();
         let minus_a = -a_m.matrix();
         transition.fixed_view_mut::<3, 3>(place::CONSTANT, place::CONSTANT).fill(0.0);
-        transition.fixed_view_mut::<3, 3>(place::CONSTANT, place::STATIC).copy_from(&minus_a);
-        transition.fixed_view_mut::<3, 3>(place::CONSTANT, place::FLEXURE).copy_from(&minus_a);
+        for place in [place::STATIC, place::FLEXURE, place::SECOND] {
+            transition.fixed_view_mut::<3, 3>(place::CONSTANT, place).copy_from(&minus_a);
+        }
         transition
     }
 
@@ -197,12 +216,12 @@ impl So3 {
 
     /// The flexure and its rate at the last propagation, rad, rad/s, in m.
     pub fn flexed(&self) -> (Vector3<f64>, Vector3<f64>) {
-        (self.theta, self.theta_rate)
+        (self.theta[0] + self.theta[1], self.theta_rate[0] + self.theta_rate[1])
     }
 
     /// Density of the noise that drives the liveliest axis of the flexure, rad^2/s^3.
     pub fn liveliest(&self) -> f64 {
-        self.flexure.iter().map(Flexure::density).fold(0.0, f64::max)
+        self.hull.all().map(Flexure::density).fold(0.0, f64::max)
     }
 
     /// How static part and flexure go on for `time_s` from now, by their models.
@@ -211,14 +230,16 @@ impl So3 {
         let (mut rows, mut noise) = (Rows::zeros(), Matrix3::zeros());
         let from_s = self.since.time_s;
         for axis in 0..3 {
-            let flexure = &self.flexure[axis];
-            let (near, far) = (flexure.transition(from_s), flexure.transition(from_s + time_s));
-            let by = [far[(0, 0)] - near[(0, 0)], far[(0, 1)] - near[(0, 1)]];
-            turn[axis] += by[0] * self.theta[axis] + by[1] * self.theta_rate[axis];
             rows[(axis, place::STATIC_RATE + axis)] = -time_s;
-            rows[(axis, place::FLEXURE + axis)] = -by[0];
-            rows[(axis, place::FLEXURE_RATE + axis)] = -by[1];
-            noise[(axis, axis)] = flexure.noise(time_s)[(0, 0)];
+            for (which, (angle, rate)) in MODES.into_iter().enumerate() {
+                let mode = self.mode(which, axis);
+                let (near, far) = (mode.transition(from_s), mode.transition(from_s + time_s));
+                let by = [far[(0, 0)] - near[(0, 0)], far[(0, 1)] - near[(0, 1)]];
+                turn[axis] += by[0] * self.theta[which][axis] + by[1] * self.theta_rate[which][axis];
+                rows[(axis, angle + axis)] = -by[0];
+                rows[(axis, rate + axis)] = -by[1];
+                noise[(axis, axis)] += mode.noise(time_s)[(0, 0)];
+            }
         }
         Ahead { turn: Vec3::from_column(turn), rows, noise }
     }
@@ -240,7 +261,7 @@ impl So3 {
 
     /// The deformation by the model alone, which is all there is while data are missing.
     pub fn predicted(&self) -> Rot<Main, Sub> {
-        Rot::<Main, Main>::exp(Vec3::from_column(self.theta)) * self.static_part
+        Rot::<Main, Main>::exp(Vec3::from_column(self.flexed().0)) * self.static_part
     }
 
     /// Static part.
@@ -265,7 +286,7 @@ impl So3 {
 
     /// Rate of the deformation by the filter, rad/s.
     pub fn rate(&self) -> Vec3<Main> {
-        Vec3::from_column(self.theta_rate) + self.static_rate
+        Vec3::from_column(self.flexed().1) + self.static_rate
     }
 
     /// How the error of [`So3::deformation`] (`Log(D_hat D_true^T)`, in m) depends on the error state.
@@ -282,7 +303,7 @@ impl So3 {
 
     /// How the error of [`So3::predicted`] depends on the error state, but for the sign.
     pub fn prediction_rows() -> Rows {
-        rows_of(place::STATIC) + rows_of(place::FLEXURE)
+        rows_of(place::STATIC) + rows_of(place::FLEXURE) + rows_of(place::SECOND)
     }
 
     /// Covariance that has entered the deformation since the last propagation, in m.
@@ -308,11 +329,14 @@ impl Matching<STATES, 3> for So3 {
         for axis in 0..3 {
             let (s, r) = (place::STATIC + axis, place::STATIC_RATE + axis);
             self.grade.place_static(h, s, r, &mut transition, &mut noise);
-            let (x, v) = (place::FLEXURE + axis, place::FLEXURE_RATE + axis);
-            self.flexure[axis].place(h, x, v, &mut transition, &mut noise);
-            let (theta, rate) = (self.theta[axis], self.theta_rate[axis]);
-            self.theta[axis] = transition[(x, x)] * theta + transition[(x, v)] * rate;
-            self.theta_rate[axis] = transition[(v, x)] * theta + transition[(v, v)] * rate;
+            for (which, (angle, rate)) in MODES.into_iter().enumerate() {
+                let (x, v) = (angle + axis, rate + axis);
+                let mode = self.mode(which, axis);
+                mode.place(h, x, v, &mut transition, &mut noise);
+                let (theta, theta_rate) = (self.theta[which][axis], self.theta_rate[which][axis]);
+                self.theta[which][axis] = transition[(x, x)] * theta + transition[(x, v)] * theta_rate;
+                self.theta_rate[which][axis] = transition[(v, x)] * theta + transition[(v, v)] * theta_rate;
+            }
         }
         let kept = (-h / WANDER_S).exp();
         self.wander = self.wander * kept;
@@ -344,8 +368,10 @@ impl Matching<STATES, 3> for So3 {
         let three = |place: usize| Vec3::<Main>::from_column(error.fixed_rows::<3>(place).into());
         self.static_part = Rot::<Main, Main>::exp(three(place::STATIC)) * self.static_part;
         self.static_rate += three(place::STATIC_RATE);
-        self.theta += error.fixed_rows::<3>(place::FLEXURE);
-        self.theta_rate += error.fixed_rows::<3>(place::FLEXURE_RATE);
+        for (which, (angle, rate)) in MODES.into_iter().enumerate() {
+            self.theta[which] += error.fixed_rows::<3>(angle);
+            self.theta_rate[which] += error.fixed_rows::<3>(rate);
+        }
         let eta = three(place::CONSTANT).relabel::<MainStart>();
         self.constant = Rot::<MainStart, MainStart>::exp(-eta) * self.constant;
         self.bias += three(place::BIAS);

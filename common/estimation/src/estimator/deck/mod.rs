@@ -14,7 +14,7 @@ use super::{Settings, attitude_of_deck, row_major};
 use crate::Estimator;
 use crate::align::{DelayRegistrar, Register, Registrar, Registration};
 use crate::evaluate::{Evaluate, Evidence};
-use crate::flexure::Flexure;
+use crate::flexure::Hull;
 use crate::matching::View;
 use crate::matching::deck::Options;
 use crate::matching::increment::Increments;
@@ -65,9 +65,8 @@ impl DeckSettings {
     }
 
     /// A flexure model kept to what the units can tell and a hull can do.
-    fn bounded(&self, flexure: [Flexure; 3]) -> [Flexure; 3] {
-        let least = self.area.grade.least_flexure();
-        flexure.map(|axis| axis.bounded(least, LARGEST_FLEXURE))
+    fn bounded(&self, hull: Hull) -> Hull {
+        hull.bounded(self.area.grade.least_flexure(), LARGEST_FLEXURE)
     }
 }
 
@@ -145,9 +144,9 @@ impl DeckEstimator {
     }
 
     /// The flexure model in force, or the one that a start by motion guesses.
-    fn flexure(&self, origin: &Origin) -> [Flexure; 3] {
-        let adopted = self.adoption.flexure().map(|flexure| self.settings.bounded(flexure));
-        adopted.or(self.settings.area.flexure).unwrap_or(origin.guess())
+    fn hull(&self, origin: &Origin) -> Hull {
+        let adopted = self.adoption.hull().map(|hull| self.settings.bounded(hull));
+        adopted.or(self.settings.area.hull).unwrap_or(origin.guess())
     }
 
     /// The attitudes start anew with a pair.
@@ -203,9 +202,9 @@ impl DeckEstimator {
     /// A filter starts at the beginning of the history, with the parameters in force.
     fn run_again(&mut self) {
         let Some(origin) = &self.origin else { return };
-        let flexure = self.flexure(origin);
+        let hull = self.hull(origin);
         let running =
-            Running::new(origin.begin(&self.settings, flexure), self.history.begin_ns(), self.settings.period_s());
+            Running::new(origin.begin(&self.settings, hull), self.history.begin_ns(), self.settings.period_s());
         if self.settings.replay {
             self.shadow = Some(Shadow { running: Box::new(running), done: 0 });
         } else {
@@ -350,8 +349,8 @@ impl Estimator for DeckEstimator {
         }
         let felt = if is_gap { None } else { self.increments.next(pair) };
         let at_end = felt.is_some_and(|step| self.history.take(&step));
-        if let (Some(flexure), Some(live)) = (self.adoption.flexure(), &mut self.live) {
-            live.set_flexure(self.settings.bounded(flexure));
+        if let (Some(hull), Some(live)) = (self.adoption.hull(), &mut self.live) {
+            live.set_flexure(self.settings.bounded(hull));
         }
         let lost = self
             .live
@@ -364,7 +363,7 @@ impl Estimator for DeckEstimator {
         self.catch_up(at_end);
 
         let mut flags = pair.flags;
-        if self.adoption.id() == 0 && self.settings.area.flexure.is_none() {
+        if self.adoption.id() == 0 && self.settings.area.hull.is_none() {
             flags |= Flags::PRIOR;
         }
         flags |= std::mem::take(&mut self.news);

@@ -3,7 +3,7 @@
 use super::DeckSettings;
 use crate::align::{DelayRegistrar, Lag, Register, Registrar, Registration};
 use crate::estimator::{REGISTRATION_DOUBT, guess};
-use crate::flexure::Flexure;
+use crate::flexure::Hull;
 use crate::matching::STATIC_RATE_SIGMA;
 use crate::matching::deck::{Covariance, Deck};
 use crate::matching::so3::{self, So3, place};
@@ -84,12 +84,12 @@ impl Origin {
     }
 
     /// A broad guess of the flexure.
-    pub fn guess(&self) -> [Flexure; 3] {
-        guess(&self.from.residual_rate)
+    pub fn guess(&self) -> Hull {
+        guess(&self.from.residual_rate).into()
     }
 
     /// State and covariance at the start.
-    pub fn begin(&self, settings: &DeckSettings, flexure: [Flexure; 3]) -> (Deck, Covariance) {
+    pub fn begin(&self, settings: &DeckSettings, hull: Hull) -> (Deck, Covariance) {
         let (grade, from) = (settings.area.grade, &self.from);
         let specified = grade.bias_variance();
         let mut p = so3::Covariance::zeros();
@@ -98,8 +98,11 @@ impl Origin {
         let mut bias = Vector3::zeros();
         for axis in 0..3 {
             p[(place::STATIC_RATE + axis, place::STATIC_RATE + axis)] = STATIC_RATE_SIGMA.powi(2);
-            let start = flexure[axis].bounded(0.0, LARGEST_START);
+            let start = hull.modes[axis].bounded(0.0, LARGEST_START);
             start.place_stationary(place::FLEXURE + axis, place::FLEXURE_RATE + axis, &mut p);
+            if let Some(second) = hull.second[axis] {
+                second.place_stationary(place::SECOND + axis, place::SECOND_RATE + axis, &mut p);
+            }
             // what the registration saw of the bias counts only where the specification is the wider one
             let seen = from.bias_sigma[axis].powi(2) * REGISTRATION_DOUBT;
             let trust = if seen.is_finite() { specified / (specified + seen) } else { 0.0 };
@@ -107,7 +110,7 @@ impl Origin {
             p[(place::BIAS + axis, place::BIAS + axis)] = specified * (1.0 - trust);
             p[(place::WANDER + axis, place::WANDER + axis)] = grade.wander_variance();
         }
-        let so3 = So3::new(grade, flexure, from.rotation, Vec3::from_column(bias));
+        let so3 = So3::new(grade, hull, from.rotation, Vec3::from_column(bias));
         Deck::new(settings.options, grade, so3, self.lag, &p)
     }
 }

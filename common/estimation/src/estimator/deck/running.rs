@@ -3,7 +3,7 @@
 use super::DeckSettings;
 use super::surprise::Surprise;
 use crate::filter::{sequential, symmetrise};
-use crate::flexure::Flexure;
+use crate::flexure::Hull;
 use crate::matching::deck::{Covariance, Deck, ROWS, STATES, VELOCITY_ROW, place};
 use crate::matching::increment::Increment;
 use crate::matching::{Matching, Observation};
@@ -58,8 +58,8 @@ impl Running {
     }
 
     /// Replaces the flexure model from now on.
-    pub fn set_flexure(&mut self, flexure: [Flexure; 3]) {
-        self.deck.set_flexure(flexure);
+    pub fn set_flexure(&mut self, hull: Hull) {
+        self.deck.set_flexure(hull);
     }
 
     /// The attitudes to come have other starting axes.
@@ -115,7 +115,7 @@ impl Running {
     /// With degrees of doubt that is many times the matching's own noise, and a filter that does not know it is lost in its first seconds.
     fn left_out(&self) -> f64 {
         let sum = |first: usize| self.p.diagonal().fixed_rows::<3>(first).sum();
-        let flexure = self.deck.so3().flexed().0.norm_squared() + sum(place::FLEXURE);
+        let flexure = self.deck.so3().flexed().0.norm_squared() + sum(place::FLEXURE) + sum(place::SECOND);
         0.5 * flexure * sum(place::STATIC)
     }
 

@@ -7,7 +7,7 @@
 //!
 //! | state | size | error | moves by |
 //! |---|---|---|---|
-//! | those of `so3` | 27 | | |
+//! | those of `so3` | 33 | | |
 //! | relative velocity `u`, m/s | 3 | additive, in the main unit's starting axes | tilt, biases, velocity random walk |
 //! | relative accelerometer bias, m/s^2 | 3 | additive, in s | constant |
 //! | angle from gyros to accelerometers of the sub unit, rad | 3 | additive, in s | constant |
@@ -30,13 +30,13 @@ use super::retiming::{Retimed, Together};
 use super::so3::{self, Grade, So3};
 use super::{Matching, Observation, Prediction, View, rows_of};
 use crate::align::Lag;
-use crate::flexure::Flexure;
+use crate::flexure::Hull;
 use frames::{Main, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector};
 use velocity::Scene;
 
 /// Size of the error state.
-pub const STATES: usize = 44;
+pub const STATES: usize = 50;
 /// Size of the measurement: attitude, then velocity.
 pub const ROWS: usize = 6;
 /// The first of them that compares velocities.
@@ -111,8 +111,8 @@ impl Deck {
     }
 
     /// Replaces the flexure model from now on.
-    pub fn set_flexure(&mut self, flexure: [Flexure; 3]) {
-        self.so3.set_flexure(flexure);
+    pub fn set_flexure(&mut self, hull: Hull) {
+        self.so3.set_flexure(hull);
     }
 
     /// Lets time pass for the model of static part and flexure.
@@ -177,6 +177,11 @@ impl Deck {
         true
     }
 
+    /// Both units at the last moment that both have felt.
+    pub fn together(&self) -> Option<&Together> {
+        self.together.as_ref()
+    }
+
     /// By how much the sub unit's data are older than their stamps, s.
     pub fn lateness(&self) -> f64 {
         self.attitudes.shift() + self.delay + self.skew * self.so3.pending_s()
@@ -218,7 +223,7 @@ impl Deck {
     /// What stands at the stamp of the last pair; with `by_model` without the attitudes, which are missing or old.
     pub fn view(&self, by_model: bool) -> View<STATES> {
         let static_rows: Rows = -rows_of(place::STATIC);
-        let rate_rows: Rows = -rows_of(place::FLEXURE_RATE);
+        let rate_rows: Rows = -(rows_of(place::FLEXURE_RATE) + rows_of(place::SECOND_RATE));
         let (seen, mut rows, mut noise) = if by_model {
             (self.so3.predicted(), -widened(&So3::prediction_rows()), Matrix3::zeros())
         } else {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::flexure::Flexure;
 use crate::matching::conformance::{STEP_S, Voyage};
 use crate::matching::increment::Increments;
 use crate::matching::{Accel, so3};
@@ -12,14 +13,15 @@ fn voyage(delay_s: f64) -> Voyage {
     Voyage { installation: Rot::exp(Vec3::new(0.7, -1.9, 1.1)), flexure: 20.0 * ARCSEC, delay_s, lever_arm: ARM }
 }
 
-fn flexure() -> [Flexure; 3] {
-    [Flexure { mu: 0.1, b: 1.0, sigma: 20.0 * ARCSEC }; 3]
+fn hull() -> Hull {
+    let second = Flexure { mu: 0.2, b: 2.0, sigma: 5.0 * ARCSEC };
+    Hull { modes: [Flexure { mu: 0.1, b: 1.0, sigma: 20.0 * ARCSEC }; 3], second: [Some(second), None, Some(second)] }
 }
 
 /// The model after `steps` samples of a voyage, told the truth at the start but for an error; filter intervals are left unfinished at the end.
 fn carried(voyage: &Voyage, shift_s: f64, error: &ErrorState, steps: usize, every: usize) -> Deck {
     let grade = Grade::default();
-    let gyros = So3::new(grade, flexure(), voyage.installation, Vec3::ZERO);
+    let gyros = So3::new(grade, hull(), voyage.installation, Vec3::ZERO);
     let lever = Lever { accel: Accel { vrw: 1e-5, bias: 1e-4 }, arm: ARM, sigma: 0.02 };
     let options =
         Options { lever: Some(lever), delay: DelayOptions { sigma: 0.02, skew_sigma: 1e-4, retimed: shift_s != 0.0 } };
@@ -165,7 +167,7 @@ fn what_is_published_is_of_the_stamp_whatever_the_delay() {
 #[test]
 fn without_accelerometers_it_is_the_gyros_model() {
     let voyage = voyage(0.0);
-    let gyros = So3::new(Grade::default(), flexure(), voyage.installation, Vec3::ZERO);
+    let gyros = So3::new(Grade::default(), hull(), voyage.installation, Vec3::ZERO);
     let (deck, p) = Deck::new(Options::default(), Grade::default(), gyros, None, &so3::Covariance::identity());
     assert!(p.diagonal().rows(place::VELOCITY, STATES - place::VELOCITY).amax() == 0.0);
     let seen = deck.observe();

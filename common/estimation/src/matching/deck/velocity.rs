@@ -212,8 +212,10 @@ impl Velocity {
             matrix.fixed_view_mut::<3, 3>(0, column).copy_from(&block);
         };
         put(place::VELOCITY, -back);
-        put(place::FLEXURE, gain * by_angle);
-        put(place::FLEXURE_RATE, gain * by_rate);
+        for (angle, rate) in [(place::FLEXURE, place::FLEXURE_RATE), (place::SECOND, place::SECOND_RATE)] {
+            put(angle, gain * by_angle);
+            put(rate, gain * by_rate);
+        }
         put(place::GAIN, Matrix3::from_diagonal(&(by_angle * scene.theta + by_rate * scene.theta_rate)));
         put(place::ARM, scene.w_m.cross_matrix());
         matrix.set_column(place::DELAY, &-(back * self.force));

@@ -8,8 +8,14 @@ fn grade() -> Grade {
     Grade { main: gyro, sub: gyro, static_noise: 2e-15 }
 }
 
-fn flexure() -> [Flexure; 3] {
-    [(0.21, 0.21, 1.7e-3), (0.1, 0.6, 1e-3), (0.8, 0.3, 2e-3)].map(|(mu, b, sigma)| Flexure { mu, b, sigma })
+/// With a second mode about two axes.
+fn hull() -> Hull {
+    let mode = |(mu, b, sigma)| Flexure { mu, b, sigma };
+    let second = [Some((0.19, 1.9, 6e-4)), None, Some((0.3, 2.5, 1e-4))];
+    Hull {
+        modes: [(0.21, 0.21, 1.7e-3), (0.1, 0.6, 1e-3), (0.8, 0.3, 2e-3)].map(mode),
+        second: second.map(|told| told.map(mode)),
+    }
 }
 
 fn installation() -> Rot<Main, Sub> {
@@ -38,9 +44,9 @@ fn increment(a_m: Rot<MainStart, Main>, a_s: Rot<SubStart, Sub>, dtheta_m: Vec3<
 
 /// A state carried over ten noise-free seconds of a rigid ship, with the given error put into it at the start.
 fn carried(error: &ErrorState) -> So3 {
-    let mut so3 = So3::new(grade(), flexure(), installation(), Vec3::new(1e-4, -2e-4, 3e-4));
-    so3.theta = Vector3::new(1e-5, -2e-5, 1e-5);
-    so3.theta_rate = Vector3::new(2e-6, 1e-6, -1e-6);
+    let mut so3 = So3::new(grade(), hull(), installation(), Vec3::new(1e-4, -2e-4, 3e-4));
+    so3.theta = [Vector3::new(1e-5, -2e-5, 1e-5), Vector3::new(-2e-5, 1e-5, 3e-5)];
+    so3.theta_rate = [Vector3::new(2e-6, 1e-6, -1e-6), Vector3::new(1e-6, -3e-6, 2e-6)];
     so3.start_epoch(ship(0.0), ship(0.0).relabel::<SubStart, Main>() * installation(), Rot::identity());
     so3.inject(error);
     for k in 1..=1000 {
@@ -65,8 +71,10 @@ fn difference(a: &So3, b: &So3) -> ErrorState {
     let mut set = |place: usize, v: Vector3<f64>| error.fixed_rows_mut::<3>(place).copy_from(&v);
     set(place::STATIC, (a.static_part * b.static_part.inverse()).log().column());
     set(place::STATIC_RATE, (a.static_rate - b.static_rate).column());
-    set(place::FLEXURE, a.theta - b.theta);
-    set(place::FLEXURE_RATE, a.theta_rate - b.theta_rate);
+    for (which, (angle, rate)) in MODES.into_iter().enumerate() {
+        set(angle, a.theta[which] - b.theta[which]);
+        set(rate, a.theta_rate[which] - b.theta_rate[which]);
+    }
     set(place::CONSTANT, -(a.constant * b.constant.inverse()).log().column());
     set(place::BIAS, (a.bias - b.bias).column());
     set(place::WANDER, (a.wander - b.wander).column());
@@ -106,7 +114,7 @@ fn measurement_matrix_is_the_central_difference_of_the_residual() {
 
 #[test]
 fn residual_vanishes_at_the_truth() {
-    let mut so3 = So3::new(grade(), flexure(), installation(), Vec3::ZERO);
+    let mut so3 = So3::new(grade(), hull(), installation(), Vec3::ZERO);
     so3.start_epoch(ship(0.0), ship(0.0).relabel::<SubStart, Main>() * installation(), Rot::identity());
     for k in 1..=6000 {
         let t = k as f64 * DT;
@@ -122,7 +130,7 @@ fn errors_of_scale_and_bias_turn_the_constant_as_the_transition_says() {
     // the units really have these errors; the state is told, so nothing may be left
     let bias = Vec3::<Main>::new(2e-4, -1e-4, 1e-4);
     let scale = SVector::<f64, 6>::from([1e-3, -2e-3, 5e-4, 3e-4, -2e-4, 1e-4]);
-    let mut so3 = So3::new(grade(), flexure(), installation(), bias);
+    let mut so3 = So3::new(grade(), hull(), installation(), bias);
     so3.scale = scale;
     let mut felt = Rot::<MainStart, Main>::identity();
     let start = ship(0.0).inverse();
