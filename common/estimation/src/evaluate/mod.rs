@@ -17,7 +17,7 @@ pub use error_range::ErrorRange;
 pub use observed::Observed;
 
 use frames::{Main, Vec3};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 
 /// What a range is made of, at one instant.
 #[derive(Clone, Copy, Debug)]
@@ -44,6 +44,11 @@ pub struct Evidence {
 pub trait Evaluate: Send {
     /// Half width of the range about each axis of m, rad.
     fn range(&mut self, evidence: &Evidence) -> [f64; 3];
+
+    /// What the waves may hide from any filter, as standard deviations about each axis of m, rad; `None` where the range does not reckon with it.
+    fn hidden(&self) -> Option<Vector3<f64>> {
+        None
+    }
 }
 
 /// So many standard deviations of the total: 1.96 for 95 % of a normal error, 3 for the naive range of paper 004.

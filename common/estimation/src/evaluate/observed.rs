@@ -119,6 +119,10 @@ impl Evaluate for Observed {
         let own = evidence.covariance.diagonal().map(|variance| DEVIATIONS * variance.sqrt());
         own.zip_map(&self.coherent, f64::hypot).into()
     }
+
+    fn hidden(&self) -> Option<Vector3<f64>> {
+        Some(self.coherent / DEVIATIONS)
+    }
 }
 
 #[cfg(test)]

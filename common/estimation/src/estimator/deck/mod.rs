@@ -7,6 +7,7 @@
 mod history;
 mod origin;
 mod running;
+mod slow;
 mod surprise;
 
 use super::adoption::Adoption;
@@ -17,13 +18,14 @@ use crate::evaluate::{Evaluate, Evidence};
 use crate::flexure::Hull;
 use crate::matching::View;
 use crate::matching::deck::Options;
-use crate::matching::increment::Increments;
-use frames::{Main, Vec3, unit};
+use crate::matching::increment::{Increment, Increments};
+use frames::{Main, Rot, Sub, Vec3, unit};
 use history::History;
 use messages::{Flags, FlexureParams, ImuPair, Solution};
 use nalgebra::Matrix3;
 use origin::Origin;
 use running::Running;
+use slow::Slow;
 
 /// While the filter runs, the registration by motion is worked out so often, ns.
 const REGISTER_AGAIN_NS: i64 = 10_000_000_000;
@@ -39,6 +41,8 @@ const GROWN: f64 = 1.2;
 const LATEST_WINDOW_S: f64 = 10.0;
 /// By how much more than a step the range is widened before it.
 const MARGIN: f64 = 1.2;
+/// Deviations that hold 95 % of a normal error.
+const DEVIATIONS: f64 = 1.96;
 /// The delay is registered from so much data, s.
 const DELAY_DATA_S: f64 = 60.0;
 
@@ -85,6 +89,8 @@ pub struct DeckEstimator {
     registered_ns: i64,
     origin: Option<Origin>,
     live: Option<Box<Running>>,
+    /// What the slow motion alone shows; only where the range reckons with what the waves hide.
+    slow: Option<Box<Slow>>,
     shadow: Option<Shadow>,
     /// Length of the history from which on it is worth running over again, s.
     again_s: f64,
@@ -122,6 +128,7 @@ impl DeckEstimator {
             registered_ns: i64::MIN,
             origin: None,
             live: None,
+            slow: None,
             shadow: None,
             again_s: 0.0,
             started_ns: i64::MAX,
@@ -138,7 +145,7 @@ impl DeckEstimator {
         self.registrar = Registrar::new(self.settings.area.grade.scale_variance());
         self.delays = self.settings.has_delay().then(DelayRegistrar::new);
         self.history.end();
-        (self.since_ns, self.origin, self.live, self.shadow) = (None, None, None, None);
+        (self.since_ns, self.origin, self.live, self.shadow, self.slow) = (None, None, None, None, None);
         self.epoch = None;
         self.news |= Flags::RESET;
     }
@@ -154,6 +161,9 @@ impl DeckEstimator {
         self.epoch = Some(pair.epoch);
         self.increments.restart();
         self.shadow = None;
+        if let Some(slow) = &mut self.slow {
+            slow.leave_epoch();
+        }
         if let Some(live) = &mut self.live {
             live.leave_epoch();
             self.history.end();
@@ -163,6 +173,36 @@ impl DeckEstimator {
                 self.run_again();
             }
         }
+    }
+
+    /// Lets the slow filter see what the fast one sees.
+    fn see_slowly(&mut self, time_ns: i64, felt: Option<&Increment>) {
+        if self.evaluation.hidden().is_none() {
+            return;
+        }
+        let (Some(live), Some(origin), Some(felt)) = (&self.live, &self.origin, felt) else { return };
+        let Some(now) = live.deck.together().filter(|_| !live.is_coasting()) else { return };
+        let hull = self.hull(origin);
+        let new = || Box::new(Slow::new(&self.settings, live.deck.so3(), &hull));
+        let mut slow = self.slow.take().unwrap_or_else(new);
+        slow.set_flexure(&hull);
+        self.slow = slow.step(time_ns, now, felt.disturbance, &hull).map(|()| slow);
+    }
+
+    /// By how much the deformation is turned by what the slow motion shows and the waves hide, and the half width of its range; `None` where the range
+    /// does not reckon with that. `own` is the covariance of the fast filter's deformation.
+    fn corrected(&self, deformation: Rot<Main, Sub>, own: &Matrix3<f64>) -> Option<(Rot<Main, Main>, [f64; 3])> {
+        let hidden = self.evaluation.hidden()?;
+        let (slow, seen) = self.slow.as_ref()?.deformation()?;
+        let fast = own + Matrix3::from_diagonal(&hidden.component_mul(&hidden));
+        let gain = fast * (fast + seen).try_inverse()?;
+        let both = (Matrix3::identity() - gain) * fast;
+        let triad = self.settings.area.grade.triad_variance();
+        let turn = gain * (slow * deformation.inverse()).log().column();
+        Some((
+            Rot::exp(Vec3::from_column(turn)),
+            both.diagonal().map(|variance| DEVIATIONS * (variance + triad).sqrt()).into(),
+        ))
     }
 
     /// Collects motion until it shows the installation; then a filter starts.
@@ -291,11 +331,15 @@ impl DeckEstimator {
             running.deck.view(coasting);
         let excess = running.surprise().excess();
         let triad = Matrix3::identity() * self.settings.area.grade.triad_variance();
-        let covariance = (rows * p * rows.transpose() + noise) * excess + triad;
+        let own = (rows * p * rows.transpose() + noise) * excess;
+        let covariance = own + triad;
         let static_covariance = static_rows * p * static_rows.transpose() * excess + triad;
         let dynamic_rows = rows - static_rows;
         let so3 = running.deck.so3();
 
+        let (turn, seen) = self.corrected(deformation, &own).unzip();
+        let turn = turn.unwrap_or(Rot::identity());
+        let (deformation, static_part) = (turn * deformation, turn * static_part);
         solution.q = deformation.quaternion();
         solution.static_q = static_part.quaternion();
         solution.constant = so3.constant().quaternion();
@@ -325,6 +369,7 @@ impl DeckEstimator {
             rate_covariance: rate_rows * p * rate_rows.transpose(),
             rate_with_static: rate_rows * p * static_rows.transpose(),
         });
+        let range = seen.unwrap_or(range);
         let announced = if self.shadow.is_some() { self.announced } else { [0.0; 3] };
         solution.range = std::array::from_fn(|axis| range[axis].max(announced[axis]));
         self.range = solution.range;
@@ -359,6 +404,7 @@ impl Estimator for DeckEstimator {
         if lost {
             self.reset();
         }
+        self.see_slowly(pair.header.time_ns, felt.as_ref());
         self.register(pair);
         self.catch_up(at_end);
 

@@ -1,0 +1,253 @@
+//! What the slow motion alone shows: turns of the ship, and of the Earth under her.
+//!
+//! A flexure in step with the waves looks like a static angle to any filter that uses the waves (004). The mean over minutes does not know the waves:
+//! `mean(Log(A_m^T N A_s S^T)) = s - mean(A_m)^T eta`, with `s` and `eta` the errors of static part and constant, and the flexure's mean is small. On a straight
+//! course that tells the difference of the two only; when the course changes, each of them about the axes that turn. So this filter, the model of
+//! [`crate::matching::so3`] without a flexure, gets one weighted mean every two minutes, knows little most of the time, and is not deceived.
+//!
+//! Hann's weights leave a few thousandths of a wave of 0.05 Hz.
+
+use super::DeckSettings;
+use crate::filter::sequential;
+use crate::flexure::{Flexure, Hull};
+use crate::matching::increment::Increment;
+use crate::matching::retiming::Together;
+use crate::matching::so3::{self, Covariance, Rows, So3, place};
+use crate::matching::{Matching, STATIC_RATE_SIGMA};
+use frames::{Main, Rot, Sub, unit};
+use nalgebra::{Matrix3, Vector3};
+use std::f64::consts::PI;
+
+/// Length of a mean, s.
+const BLOCK_S: f64 = 120.0;
+/// The attitudes are looked at so often, s.
+const EVERY_S: f64 = 0.1;
+/// What is known of static part and constant before any turn, rad: half a degree, more than any coupling hides.
+const UNKNOWN: f64 = 0.5 * unit::DEGREE;
+/// Variance of a mean with Hann's weights over that with equal ones.
+const HANN: f64 = 1.5;
+/// By how much calmer the static part is taken to be than the fast filter takes it. That one has the waves at every moment and loses nothing by reckoning with
+/// sudden bends; over the half hour from one turn to the next its figure would be seven minutes of arc, and a turn would be forgotten as soon as seen.
+const CALMER: f64 = 1e-3;
+
+/// The slow filter.
+#[derive(Clone, Debug)]
+pub struct Slow {
+    so3: So3,
+    p: Covariance,
+    /// Variance of a mean by the flexure's slow part, about each axis, rad^2.
+    flexure: Vector3<f64>,
+    block: Block,
+    last: Option<Last>,
+    begun: bool,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Last {
+    time_ns: i64,
+    now: Together,
+    disturbance: f64,
+}
+
+/// Weighted sums since the last propagation.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    weight: f64,
+    residual: Vector3<f64>,
+    rows: Rows,
+}
+
+impl Block {
+    fn new() -> Self {
+        Self { weight: 0.0, residual: Vector3::zeros(), rows: Rows::zeros() }
+    }
+}
+
+fn still(hull: &Hull) -> Hull {
+    Hull::from(hull.modes.map(|mode| Flexure { sigma: 0.0, ..mode }))
+}
+
+impl Slow {
+    /// A filter that starts from where a fast one stands, but knows nothing of what that believes.
+    pub fn new(settings: &DeckSettings, fast: &So3, hull: &Hull) -> Self {
+        let grade = so3::Grade { static_noise: settings.area.grade.static_noise * CALMER, ..settings.area.grade };
+        let mut p = Covariance::zeros();
+        for axis in 0..3 {
+            p[(place::STATIC + axis, place::STATIC + axis)] = UNKNOWN * UNKNOWN;
+            p[(place::STATIC_RATE + axis, place::STATIC_RATE + axis)] = STATIC_RATE_SIGMA.powi(2);
+            p[(place::BIAS + axis, place::BIAS + axis)] = grade.bias_variance();
+            p[(place::WANDER + axis, place::WANDER + axis)] = grade.wander_variance();
+        }
+        let scale = grade.scale_covariance(fast.static_part());
+        p.fixed_view_mut::<6, 6>(place::SCALE, place::SCALE).copy_from(&scale);
+        let so3 = So3::new(grade, still(hull), fast.static_part(), fast.drift());
+        let mut slow = Self { so3, p, flexure: Vector3::zeros(), block: Block::new(), last: None, begun: false };
+        slow.set_flexure(hull);
+        slow
+    }
+
+    /// How large the slow part of the flexure is.
+    pub fn set_flexure(&mut self, hull: &Hull) {
+        let density =
+            |axis: usize| hull.modes[axis].spectrum(0.0) + hull.second[axis].map_or(0.0, |mode| mode.spectrum(0.0));
+        self.flexure = Vector3::from_fn(|axis, _| HANN * density(axis) / BLOCK_S);
+    }
+
+    /// The attitudes to come have other starting axes.
+    pub fn leave_epoch(&mut self) {
+        (self.last, self.begun, self.block) = (None, false, Block::new());
+    }
+
+    /// Takes in the units' attitudes of a moment, with the angle errors that came in since the one before, rad; `None` when the numbers have become useless.
+    pub fn step(&mut self, time_ns: i64, now: &Together, disturbance: f64, hull: &Hull) -> Option<()> {
+        let Some(last) = &mut self.last else {
+            self.start_epoch(now, hull);
+            self.last = Some(Last { time_ns, now: *now, disturbance: 0.0 });
+            return Some(());
+        };
+        last.disturbance = last.disturbance.hypot(disturbance);
+        let time_s = unit::seconds(time_ns - last.time_ns);
+        if time_s < EVERY_S - 0.5e-3 {
+            return Some(());
+        }
+        let step = Increment {
+            time_ns,
+            time_s,
+            a_m: now.a_m,
+            a_s: now.a_s,
+            dtheta_m: (last.now.a_m.inverse() * now.a_m).log(),
+            disturbance: last.disturbance,
+            rate_changes: Matrix3::zeros(),
+            velocities: None,
+            spiked_s: 0.0,
+        };
+        self.last = Some(Last { time_ns, now: *now, disturbance: 0.0 });
+        self.so3.coast(time_s);
+        self.so3.advance(&step);
+        self.add(time_s);
+        if self.so3.pending_s() >= BLOCK_S { self.end_block() } else { Some(()) }
+    }
+
+    /// The constant of a new epoch is defined by static part and flexure, of which the flexure is not known.
+    fn start_epoch(&mut self, now: &Together, hull: &Hull) {
+        for axis in 0..3 {
+            let second = hull.second[axis].map_or(0.0, |mode| mode.sigma);
+            self.p[(place::FLEXURE + axis, place::FLEXURE + axis)] = hull.modes[axis].sigma.powi(2) + second * second;
+        }
+        let transition = self.so3.start_epoch(now.a_m, now.a_s, Rot::identity());
+        self.p = sequential::carried(&transition, &self.p);
+        for axis in place::FLEXURE..place::FLEXURE + 3 {
+            self.p.fill_row(axis, 0.0);
+            self.p.fill_column(axis, 0.0);
+        }
+        (self.begun, self.block) = (true, Block::new());
+    }
+
+    fn add(&mut self, time_s: f64) {
+        let since_s = self.so3.pending_s();
+        let weight = (PI * since_s / BLOCK_S).sin().powi(2) * time_s;
+        let ahead = Rot::<Main, Main>::exp(self.so3.rate() * since_s);
+        let predicted = ahead * self.so3.predicted();
+        let mut rows = So3::prediction_rows() + self.so3.deformation_rows();
+        for axis in 0..3 {
+            rows[(axis, place::STATIC_RATE + axis)] += since_s;
+        }
+        let block = &mut self.block;
+        block.weight += weight;
+        block.residual += (self.so3.deformation() * predicted.inverse()).log().column() * weight;
+        block.rows += rows * weight;
+    }
+
+    fn end_block(&mut self) -> Option<()> {
+        let block = std::mem::replace(&mut self.block, Block::new());
+        let walk = self.so3.deformation_noise();
+        let prediction = self.so3.propagate();
+        if block.weight > 0.0 {
+            let noise = Matrix3::from_diagonal(&self.flexure) + walk;
+            let (residual, rows) = (block.residual / block.weight, block.rows / block.weight);
+            let correction = sequential::update(&mut self.p, &residual, &rows, &noise)?;
+            self.so3.inject(&(prediction.transition * correction.error));
+        }
+        self.p = sequential::carried(&prediction.transition, &self.p) + prediction.noise;
+        self.p.diagonal().iter().all(|v| v.is_finite() && *v >= 0.0).then_some(())
+    }
+
+    /// The deformation and the covariance of its error, rad^2, in m; `None` before there is one.
+    pub fn deformation(&self) -> Option<(Rot<Main, Sub>, Matrix3<f64>)> {
+        let rows = self.so3.deformation_rows();
+        let covariance = rows * self.p * rows.transpose() + self.so3.deformation_noise();
+        self.begun.then(|| (self.so3.deformation(), covariance))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimator::Settings;
+    use crate::matching::deck::Options;
+    use crate::matching::increment::Velocities;
+    use frames::unit::{ARCSEC, DEGREE, nanoseconds};
+    use frames::{MainStart, SubStart, Vec3};
+
+    const HULL: Flexure = Flexure { mu: 0.1, b: 0.42, sigma: 12.0 * ARCSEC };
+    /// What the flexure is of the swing: so much that a filter which trusts the waves is a minute of arc off.
+    const COUPLED: f64 = 3e-4;
+
+    fn settings() -> DeckSettings {
+        let gyro = so3::Gyro { arw: 3e-7, bias: 1.5e-8, instability: 1.5e-9, ..so3::Gyro::default() };
+        let area = Settings {
+            area: 0,
+            grade: so3::Grade { main: gyro, sub: gyro, static_noise: 1e-4 * ARCSEC * ARCSEC },
+            interval_s: 0.1,
+            filter_hz: 10.0,
+            registration_s: 30.0,
+            installation: None,
+            hull: None,
+        };
+        DeckSettings { area, options: Options::default(), replay: true }
+    }
+
+    /// Attitude of a ship in waves that turns by 150 degrees after twenty minutes, and the swing by the waves.
+    fn ship(t: f64) -> (Rot<MainStart, Main>, Vec3<Main>) {
+        let swing = Vec3::new(0.06 * (0.45 * t).sin(), 0.04 * (1.1 * t + 1.0).sin(), 0.014 * (0.4 * t + 2.0).sin());
+        let course = DEGREE * (t - 1200.0).clamp(0.0, 150.0);
+        (Rot::<MainStart, Main>::exp(Vec3::new(0.0, 0.0, course)) * Rot::<Main, Main>::exp(swing), swing)
+    }
+
+    /// Error and covariance of the deformation after a time, with a flexure that goes with the swing.
+    fn seen(until_s: f64) -> (Vector3<f64>, Matrix3<f64>) {
+        let fixed = Rot::<Main, Sub>::exp(Vec3::new(0.3, -0.2, 0.5));
+        let bent = |swing: Vec3<Main>| Rot::<Main, Main>::exp(swing.cross(Vec3::new(1.0, -2.0, 0.5)) * COUPLED) * fixed;
+        let wrong = Rot::<Main, Main>::exp(Vec3::new(60.0, -40.0, 50.0) * ARCSEC) * fixed;
+        let hull = Hull::from([HULL; 3]);
+        let fast = So3::new(settings().area.grade, hull, wrong, Vec3::ZERO);
+        let mut slow = Slow::new(&settings(), &fast, &hull);
+        let (start, first) = ship(0.0);
+        for k in 0..=(until_s / 0.1) as i64 {
+            let (a, swing) = ship(k as f64 * 0.1);
+            let a_m = start.relabel::<Main, MainStart>().inverse().relabel::<MainStart, MainStart>() * a;
+            let a_s = bent(first).inverse().relabel::<SubStart, MainStart>() * a_m * bent(swing);
+            let now = Together { a_m, a_s, w_m: Vec3::ZERO, gained: Velocities::ZERO };
+            slow.step(nanoseconds(k as f64 * 0.1), &now, 0.0, &hull).expect("numbers");
+        }
+        let (found, covariance) = slow.deformation().expect("begun");
+        let (_, swing) = ship(until_s);
+        ((found * bent(swing).inverse()).log().column() / ARCSEC, covariance / (ARCSEC * ARCSEC))
+    }
+
+    #[test]
+    fn a_straight_course_tells_nothing_and_is_not_believed() {
+        let (_, covariance) = seen(1190.0);
+        assert!(covariance.diagonal().iter().all(|variance| variance.sqrt() > 200.0), "{covariance}");
+    }
+
+    #[test]
+    fn a_turn_shows_what_the_waves_hide_about_the_axes_that_turn() {
+        let (error, covariance) = seen(2400.0);
+        for axis in 0..2 {
+            let sigma = covariance[(axis, axis)].sqrt();
+            assert!(sigma < 25.0 && error[axis].abs() < 3.0 * sigma, "{axis}: {error} {covariance}");
+        }
+        assert!(covariance[(2, 2)].sqrt() > 100.0, "{covariance}");
+    }
+}
