@@ -264,6 +264,19 @@ fn nothing_is_compared_across_a_hole() {
     assert!((alarms as f64) < 4e-6 * 12.0 * 24_000.0, "{alarms} alarms");
 }
 
+/// What is integrated first stands in all that comes after.
+#[test]
+fn a_spike_of_the_first_second_is_found() {
+    for seed in SEEDS {
+        let (main, mut sub) = (unit_samples(1, 400, T), unit_samples(seed, 400, T));
+        let (clean, _) = run(settings(T, 5.0, ARM), &main, &sub);
+        (60..400).step_by(20).for_each(|k| sub[k].dtheta[k / 20 % 3] += 1000.0 * GYRO);
+        let (found, _) = run(settings(T, 5.0, ARM), &main, &sub);
+        let left = sum(&found, |p| p.dtheta_s) - sum(&clean, |p| p.dtheta_s);
+        assert!(left.abs() < 0.02 * 17.0 * 1000.0 * GYRO, "seed {seed}: {} sigma", left / GYRO);
+    }
+}
+
 #[test]
 fn whoever_joins_a_few_samples_later_judges_alike() {
     for seed in SEEDS {

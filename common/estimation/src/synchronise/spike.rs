@@ -190,7 +190,7 @@ impl SpikeTest {
             let taps = self.taps(channel);
             let whole = self.filled == ROWS;
             let found = self.roughness[channel].scale().and_then(|scale| taps.spike(scale, self.told.threshold, whole));
-            self.roughness[channel].add(taps.second(), taps.fourth());
+            self.roughness[channel].add(taps.second(), taps.fourth(), self.whole);
             let Some(found) = found.filter(|found| channel < 3 || !self.explains(found.excess)) else { continue };
             excess[channel] = found.excess;
             flags |= Flags::SPIKE;
