@@ -1,7 +1,6 @@
 //! Accuracy of the demo scenario beside its bound, over fixed seeds; and of real units on one rigid board.
 #![allow(clippy::unwrap_used, clippy::print_stdout)]
 
-use estimation::flexure::Flexure;
 use frames::{Main, Rot, Sub, Vec3, unit};
 use messages::{Solution, Truth};
 use nalgebra::{Matrix3, Vector3};
@@ -62,9 +61,8 @@ fn demo(seed: u64) -> Configuration {
 /// The same run by a filter that is told the true flexure model: the bound.
 fn told(seed: u64) -> Configuration {
     let mut configuration = demo(seed);
-    let truth = configuration.areas[0].simulation.flexure;
-    let model = truth.map(|axis| Flexure { mu: axis.mu, b: axis.b, sigma: axis.sigma });
-    configuration.areas[0].identifier.method = IdentifierMethod::Fixed(model);
+    let area = &mut configuration.areas[0];
+    area.identifier.method = IdentifierMethod::Fixed(area.simulation.hull());
     configuration
 }
 

@@ -175,7 +175,7 @@ fn matched<M: Model<N, K> + 'static, const N: usize, const K: usize>(
 
 fn evaluation(configuration: &Configuration, area: usize) -> Box<dyn Evaluate> {
     let told = &configuration.areas[area].estimator;
-    match told.range {
+    match told.range() {
         RangeMethod::Normal => Box::new(Deviations(1.96)),
         RangeMethod::Naive => Box::new(Deviations(3.0)),
         RangeMethod::ErrorRange => Box::new(ErrorRange::new(told.range_factor)),
@@ -216,7 +216,7 @@ fn settings(configuration: &Configuration, area: usize) -> estimator::Settings {
             .installation
             .map(|told| estimator::Installation { rotation: told.rotation, sigma: told.sigma }),
         hull: match area.identifier.method {
-            IdentifierMethod::Fixed(flexure) => Some(flexure.into()),
+            IdentifierMethod::Fixed(hull) => Some(hull),
             IdentifierMethod::Learnt(_) => None,
         },
     }

@@ -1,6 +1,5 @@
 //! What is run: the configuration's scenario, and the project's own estimator that is told the true flexure.
 
-use estimation::flexure::Flexure;
 use pipeline::configuration::{
     Area, AreaSimulation, Configuration, ConfigurationError, EstimatorSettings, FilterMethod, IdentifierMethod,
     MatchingMethod, RangeMethod, RegistrationMethod, Source,
@@ -101,13 +100,12 @@ fn require_truth(configuration: &Configuration, text: &str) -> Result<(), Config
 
 /// Gives an area the project's own estimator with the true flexure; what the user says of rates, delay and installation stays.
 fn tell(area: &mut Area) {
-    let truth = area.simulation.flexure.map(|axis| Flexure { mu: axis.mu, b: axis.b, sigma: axis.sigma });
-    area.identifier.method = IdentifierMethod::Fixed(truth);
+    area.identifier.method = IdentifierMethod::Fixed(area.simulation.hull());
     area.estimator = EstimatorSettings {
         matching: MatchingMethod::Deck,
         registration: RegistrationMethod::Motion,
         filter: FilterMethod::Kalman,
-        range: RangeMethod::Normal,
+        range: Some(RangeMethod::Normal),
         network: None,
         ..area.estimator
     };

@@ -43,20 +43,26 @@ pub fn is_not_slow(series: &Series) -> bool {
     whittle::against_slow(series, SLOW).is_some_and(|evidence| evidence > DECISIVE)
 }
 
-/// The parameters that a filter gets from a window of `length_s`.
-pub fn safe(identified: &Identified, length_s: f64) -> Flexure {
+/// The parameters that a filter gets from a window of `length_s`. A short window that is `believed` keeps its frequency and is still made larger by what is
+/// not known of its size.
+pub fn safe(identified: &Identified, length_s: f64, believed: bool) -> Flexure {
     let Flexure { mu, b, sigma } = identified.flexure;
     let density = identified.flexure.density();
     let short = length_s <= SHORT_S;
     let doubt = |sd: f64| if short { sd.min(LARGEST_DOUBT).exp() } else { 1.0 };
-    if mu / b * doubt(BELIEF * identified.ln_mu_sd) <= OSCILLATES && length_s >= BELIEVABLE_S {
+    let oscillates = if believed {
+        mu / b <= OSCILLATES
+    } else {
+        mu / b * doubt(BELIEF * identified.ln_mu_sd) <= OSCILLATES && length_s >= BELIEVABLE_S
+    };
+    if oscillates {
         return Flexure { mu, b, sigma: sigma * doubt(identified.ln_sigma_sd).max(WIDER) };
     }
     // No less than what an oscillation of the same size would get, so that doubt about the damping never takes density away.
     let raise = (b / (2.0 * mu)).powi(2).clamp(1.0, LARGEST_RAISE) * doubt(identified.ln_density_sd).max(WIDER * WIDER);
     let density = if short { density * raise } else { density };
     let doubled = (density / (16.0 * sigma * sigma)).cbrt();
-    let b = if short { doubled.min(SLOW) } else { doubled };
+    let b = if short && !believed { doubled.min(SLOW) } else { doubled };
     Flexure { mu: b, b, sigma: (density / (4.0 * b * b * b)).sqrt() }
 }
 
@@ -73,7 +79,7 @@ mod tests {
     fn near_critical_damping_sigma_doubles_at_the_same_density() {
         for (mu, b) in [(0.2, 0.2), (0.6, 0.3), (0.11, 0.2)] {
             let before = identified(mu, b);
-            let after = safe(&before, 300.0);
+            let after = safe(&before, 300.0, false);
             assert!((after.sigma / before.flexure.sigma - 2.0).abs() < 1e-12);
             assert!((after.density() / before.flexure.density() - 1.0).abs() < 1e-12);
             assert_eq!(after.mu, after.b);
@@ -82,7 +88,7 @@ mod tests {
 
     #[test]
     fn an_oscillation_keeps_its_frequency() {
-        let (before, after) = (identified(0.1, 0.6), safe(&identified(0.1, 0.6), 300.0));
+        let (before, after) = (identified(0.1, 0.6), safe(&identified(0.1, 0.6), 300.0, false));
         assert_eq!((after.mu, after.b), (before.flexure.mu, before.flexure.b));
         assert!((after.sigma / before.flexure.sigma - 1.15).abs() < 1e-12);
     }
@@ -90,7 +96,7 @@ mod tests {
     #[test]
     fn a_short_window_is_never_stiffer_or_quieter_than_a_long_one() {
         for (mu, b) in [(0.2, 0.2), (0.6, 0.3), (0.22, 0.5), (0.1, 0.6), (2.0, 5.0)] {
-            let (short, long) = (safe(&identified(mu, b), 60.0), safe(&identified(mu, b), 300.0));
+            let (short, long) = (safe(&identified(mu, b), 60.0, false), safe(&identified(mu, b), 300.0, false));
             assert!(
                 short.sigma > long.sigma && short.b <= long.b && short.density() > 0.999_999 * long.density(),
                 "{mu} {b}"

@@ -78,7 +78,7 @@ impl Windowed {
             }
             let series = Series { kind: Kind::Rates, values, step_s: chain.step_s };
             let believed = self.settings.provisional && length_s <= SHORT_S && is_not_slow(&series);
-            safe(found, if believed { f64::INFINITY } else { length_s })
+            safe(found, length_s, believed)
         };
         Hull {
             modes: [0, 1, 2].map(|i| model(&axes[i].mode, &chain.rates[i])),

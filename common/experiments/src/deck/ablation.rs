@@ -65,7 +65,7 @@ fn measure(scenario: &Scenario, trial: &Trial) -> Result<Measured, Fault> {
     let wanted = !trial.quick || scenario.id == QUICK;
     let Some(configuration) = scenario.configuration(trial)?.filter(|_| wanted) else { return Ok(None) };
     let data = Data::simulate(&configuration)?;
-    let default = method::default(&configuration)?;
+    let default = method::default(&configuration);
     let whole = run_blind(&default, &data);
     let without = |part: &Part| {
         let changed = default.with(part.remove);

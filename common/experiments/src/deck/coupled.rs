@@ -153,7 +153,7 @@ fn measure(case: &Case, trial: &Trial) -> Result<Option<Measured>, Fault> {
         return Ok(None);
     }
     let configuration = configuration(case, trial)?;
-    let tracks = run_together(&configuration, &[method::default(&configuration)?], EVERY_S)?;
+    let tracks = run_together(&configuration, &[method::default(&configuration)], EVERY_S)?;
     // the first turn shows what the waves do not
     let turned_s =
         configuration.simulation.turns.map_or(EARLY_S, |turns| turns.every_s + turns.length_s + turns.ramp_s);

@@ -73,7 +73,7 @@ pub(super) fn paired(ours: &Track, other: &Track) -> [Option<Paired>; 2] {
 pub(super) fn measure(scenario: &Scenario, trial: &Trial) -> Result<Option<Measured>, Fault> {
     let Some(configuration) = scenario.configuration(trial)? else { return Ok(None) };
     let data = Data::simulate(&configuration)?;
-    let default = method::default(&configuration)?;
+    let default = method::default(&configuration);
     let ours = run_blind(&default, &data);
     let truth = run_true(&method::told(&default), &data);
     let rivals = scenario.rivals.iter().map(|rival| Ok(paired(&ours, &run_blind(&rival.on(&configuration)?, &data))));

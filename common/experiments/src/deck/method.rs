@@ -1,55 +1,26 @@
 //! The methods that are compared.
 
 use crate::{Data, Fault, Track, presets, run, run_told};
-use estimation::flexure::Flexure;
 use frames::unit::nanoseconds;
 use messages::{FlexureParams, Header};
-use pipeline::configuration::{Configuration, IdentifierMethod};
-use simulation::GaussMarkov;
-use std::path::Path;
-
-/// The one configuration of the estimator.
-const DEFAULT: &str = r#"
-[area.estimator]
-matching = "deck"
-range = "observed"
-
-[area.identifier]
-method = "whittle"
-window_s = 600
-period_s = 10
-minimum_s = 30
-"#;
-
-/// What a configuration needs besides; nothing of it is used.
-const FRAME: &str = r#"
-rate_hz = 100
-[main]
-source = { kind = "simulator" }
-gyro = { arw_deg_per_sqrt_h = 0.001, bias_deg_per_h = 0.003 }
-[[area]]
-name = "deck"
-source = { kind = "simulator" }
-gyro = { arw_deg_per_sqrt_h = 0.001, bias_deg_per_h = 0.01 }
-"#;
+use pipeline::configuration::{Configuration, EstimatorSettings, IdentifierMethod, IdentifierSettings};
 
 /// Distance of the points of a track: every pair.
 const EVERY_S: f64 = 0.0;
 
-/// The estimator on a scenario, from nothing.
-pub(super) fn default(scenario: &Configuration) -> Result<Configuration, Fault> {
-    let told = Configuration::parse(Path::new("default"), &format!("{FRAME}{DEFAULT}"))?;
-    Ok(scenario.with(|c| {
+/// The estimator on a scenario, from nothing: what a configuration gets that says nothing of it.
+pub(super) fn default(scenario: &Configuration) -> Configuration {
+    scenario.with(|c| {
         let area = &mut c.areas[0];
-        (area.estimator, area.identifier) = (told.areas[0].estimator, told.areas[0].identifier);
-    }))
+        (area.estimator, area.identifier) = (EstimatorSettings::default(), IdentifierSettings::default());
+    })
 }
 
 /// The same, told the flexure from the start on.
 pub(super) fn told(method: &Configuration) -> Configuration {
     method.with(|c| {
         let area = &mut c.areas[0];
-        area.identifier.method = IdentifierMethod::Fixed(area.simulation.flexure.map(flexure));
+        area.identifier.method = IdentifierMethod::Fixed(area.simulation.hull());
     })
 }
 
@@ -72,10 +43,6 @@ pub(super) fn run_true(method: &Configuration, data: &Data) -> Track {
 /// Runs a method that is told nothing.
 pub(super) fn run_blind(method: &Configuration, data: &Data) -> Track {
     run(method, data, EVERY_S)
-}
-
-fn flexure(axis: GaussMarkov) -> Flexure {
-    Flexure { mu: axis.mu, b: axis.b, sigma: axis.sigma }
 }
 
 /// A paper's method, or one of ours beside it, that is not told the true flexure.

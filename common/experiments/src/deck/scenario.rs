@@ -209,18 +209,18 @@ mod tests {
         let trial = Trial { index: 0, seed: 1, quick: false };
         for scenario in &SCENARIOS {
             let configuration = scenario.configuration(&trial).unwrap().unwrap();
-            let ours = method::default(&configuration).unwrap();
+            let ours = method::default(&configuration);
             let area = &ours.areas[0];
             assert_eq!(area.estimator.matching, MatchingMethod::Deck);
             assert!(area.installation.is_none() && matches!(area.identifier.method, IdentifierMethod::Learnt(_)));
             let truth = &method::told(&ours).areas[0];
-            let IdentifierMethod::Fixed(flexure) = truth.identifier.method else { panic!("{}", scenario.id) };
-            for (told, real) in flexure.iter().zip(area.simulation.flexure) {
+            let IdentifierMethod::Fixed(hull) = truth.identifier.method else { panic!("{}", scenario.id) };
+            for (told, real) in hull.modes.iter().zip(area.simulation.flexure) {
                 assert_eq!((told.mu, told.b, told.sigma), (real.mu, real.b, real.sigma));
             }
             for rival in scenario.rivals {
                 if let IdentifierMethod::Fixed(told) = rival.on(&configuration).unwrap().areas[0].identifier.method {
-                    assert_ne!(told[0].sigma, flexure[0].sigma, "{} is told the truth", rival.id);
+                    assert_ne!(told.modes[0].sigma, hull.modes[0].sigma, "{} is told the truth", rival.id);
                 }
             }
         }

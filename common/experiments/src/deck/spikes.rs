@@ -46,7 +46,7 @@ fn measure(trial: &Trial) -> Result<Measured, Fault> {
 }
 
 fn on(configuration: &Configuration) -> Result<crate::Track, Fault> {
-    Ok(run_blind(&method::default(configuration)?, &Data::simulate(configuration)?))
+    Ok(run_blind(&method::default(configuration), &Data::simulate(configuration)?))
 }
 
 fn conclude(trials: &[Measured]) -> Findings {

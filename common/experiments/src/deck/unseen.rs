@@ -97,7 +97,7 @@ fn configuration(case: &Case, trial: &Trial) -> Result<Configuration, Fault> {
 
 fn measure(case: &Case, trial: &Trial) -> Result<Measured, Fault> {
     let configuration = configuration(case, trial)?;
-    let track = run_blind(&method::default(&configuration)?, &Data::simulate(&configuration)?);
+    let track = run_blind(&method::default(&configuration), &Data::simulate(&configuration)?);
     let half = track.over(configuration.run.duration_s.unwrap_or(0.0) / 2.0..);
     Ok(Measured { seed: trial.seed, valid: half.valid_share(), own: Paired::of(half, half) })
 }

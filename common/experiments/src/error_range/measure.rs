@@ -193,7 +193,7 @@ impl Measured {
 /// The filter of a configuration with a range.
 pub(super) fn ranged(configuration: &Configuration, range: RangeMethod, factor: [f64; 3]) -> Box<dyn Estimator> {
     let told = configuration.with(|c| {
-        c.areas[0].estimator.range = range;
+        c.areas[0].estimator.range = Some(range);
         c.areas[0].estimator.range_factor = factor;
     });
     lane::estimator(&told, 0)

@@ -1,7 +1,6 @@
 //! The methods that are compared, each the estimator and the identifier of a preset.
 
 use crate::{Fault, Published, presets};
-use estimation::flexure::Flexure;
 use pipeline::configuration::{Configuration, IdentifierMethod};
 
 /// A method.
@@ -85,9 +84,7 @@ impl Method {
 /// Gives the filter the true flexure.
 fn tell(configuration: &mut Configuration) {
     let area = &mut configuration.areas[0];
-    let truth = area.simulation.flexure;
-    area.identifier.method =
-        IdentifierMethod::Fixed(truth.map(|axis| Flexure { mu: axis.mu, b: axis.b, sigma: axis.sigma }));
+    area.identifier.method = IdentifierMethod::Fixed(area.simulation.hull());
 }
 
 const CHAIN: &str = "The chain of both gyros through the estimated installation carries no flexure into the output, \

@@ -2,7 +2,6 @@
 
 use super::Size;
 use crate::{Fault, presets};
-use estimation::flexure::Flexure;
 use estimation::identify;
 use frames::unit::{ARCSEC, nanoseconds};
 use messages::{FlexureParams, Header};
@@ -23,8 +22,8 @@ pub(super) fn of(preset: &str, scenario: &Configuration, size: Size) -> Result<C
         if let Some(network) = &mut area.estimator.network {
             network.offset_walk *= size.factor();
         }
-        if let IdentifierMethod::Fixed(flexure) = &mut area.identifier.method {
-            flexure.iter_mut().for_each(|axis| axis.sigma *= size.factor());
+        if let IdentifierMethod::Fixed(hull) = &mut area.identifier.method {
+            hull.modes.iter_mut().for_each(|axis| axis.sigma *= size.factor());
         }
     }))
 }
@@ -44,11 +43,7 @@ pub(super) fn matched(method: &Configuration, moves: bool) -> Configuration {
 pub(super) fn told(method: &Configuration) -> Configuration {
     method.with(|c| {
         let area = &mut c.areas[0];
-        area.identifier.method = IdentifierMethod::Fixed(area.simulation.flexure.map(|axis| Flexure {
-            mu: axis.mu,
-            b: axis.b,
-            sigma: axis.sigma,
-        }));
+        area.identifier.method = IdentifierMethod::Fixed(area.simulation.hull());
     })
 }
 

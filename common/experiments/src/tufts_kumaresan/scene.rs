@@ -87,7 +87,7 @@ impl Scene {
     /// The filter's configuration with a flexure model and an assumed noise of the measurement in rad.
     fn told(&self, flexure: [Flexure; 3], noise: f64) -> Configuration {
         self.configuration.with(|c| {
-            c.areas[0].identifier.method = IdentifierMethod::Fixed(flexure);
+            c.areas[0].identifier.method = IdentifierMethod::Fixed(flexure.into());
             c.areas[0].estimator.attitude_noise = noise;
         })
     }

@@ -2,6 +2,7 @@
 
 use super::instrument::{Accel, Gyro};
 use super::{Wire, events, flexure, quantity, table, unit_errors};
+use estimation::flexure::{Flexure, Hull};
 use frames::unit::ARCMIN;
 use frames::{Main, Vec3};
 use serde::Deserialize;
@@ -58,6 +59,15 @@ pub struct AreaSimulation {
     /// What goes wrong with the unit and its wire.
     #[serde(deserialize_with = "events::events")]
     pub events: Vec<Event>,
+}
+
+impl AreaSimulation {
+    /// The flexure model of the hull at the start, as a filter takes it.
+    pub fn hull(&self) -> Hull {
+        let mode = |axis: GaussMarkov| Flexure { mu: axis.mu, b: axis.b, sigma: axis.sigma };
+        let second = self.second_flexure.map_or([None; 3], |modes| modes.map(|axis| Some(mode(axis))));
+        Hull { modes: self.flexure.map(mode), second }
+    }
 }
 
 impl Default for AreaSimulation {

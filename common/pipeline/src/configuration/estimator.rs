@@ -30,9 +30,9 @@ pub enum RegistrationMethod {
 #[serde(rename_all = "snake_case")]
 pub enum MatchingMethod {
     /// Attitudes on SO(3).
-    #[default]
     So3,
-    /// The same with accelerometers and an unknown delay, and the first minutes run over again with better parameters.
+    /// The same with accelerometers, an unknown delay and a second mode of the hull, and the first minutes run over again with better parameters.
+    #[default]
     Deck,
     /// Angular rates, 12 states.
     Rate,
@@ -207,8 +207,8 @@ pub struct EstimatorSettings {
     pub matching: MatchingMethod,
     /// How the state is corrected.
     pub filter: FilterMethod,
-    /// What the published range is made of.
-    pub range: RangeMethod,
+    /// What the published range is made of; by default what suits the matching.
+    pub range: Option<RangeMethod>,
     /// What the range is multiplied by about each axis, if it takes a factor: F of 004 (s^-1/2), or the coherence.
     #[serde(deserialize_with = "quantity::range_factor")]
     pub range_factor: [f64; 3],
@@ -244,9 +244,9 @@ impl Default for EstimatorSettings {
     fn default() -> Self {
         Self {
             registration: RegistrationMethod::Motion,
-            matching: MatchingMethod::So3,
+            matching: MatchingMethod::default(),
             filter: FilterMethod::Kalman,
-            range: RangeMethod::Normal,
+            range: None,
             range_factor: [1.0; 3],
             filter_hz: 10.0,
             registration_s: 20.0,
@@ -257,5 +257,13 @@ impl Default for EstimatorSettings {
             delay: None,
             network: None,
         }
+    }
+}
+
+impl EstimatorSettings {
+    /// What the published range is made of.
+    pub fn range(&self) -> RangeMethod {
+        let suitable = if self.matching == MatchingMethod::Deck { RangeMethod::Observed } else { RangeMethod::Normal };
+        self.range.unwrap_or(suitable)
     }
 }

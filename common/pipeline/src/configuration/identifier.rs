@@ -1,7 +1,7 @@
 //! The settings of the slow stage of an area.
 
 use super::{quantity, table};
-use estimation::flexure::Flexure;
+use estimation::flexure::{Flexure, Hull};
 use estimation::identify::Method;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
@@ -12,8 +12,8 @@ use std::fmt;
 pub enum IdentifierMethod {
     /// The model is learnt from a window of data by this method.
     Learnt(Method),
-    /// Nothing is learnt: this model, an axis of m each.
-    Fixed([Flexure; 3]),
+    /// Nothing is learnt: this model.
+    Fixed(Hull),
 }
 
 /// The slow stage.
@@ -38,11 +38,11 @@ pub struct IdentifierSettings {
 impl Default for IdentifierSettings {
     fn default() -> Self {
         Self {
-            method: IdentifierMethod::Learnt(Method::default()),
-            window_s: 300.0,
+            method: IdentifierMethod::Learnt(Method::Whittle),
+            window_s: 600.0,
             period_s: 10.0,
             lead_s: 1.0,
-            minimum_s: 10.0,
+            minimum_s: 30.0,
             dictionary: 1,
             safety: true,
         }
@@ -92,7 +92,7 @@ struct IdentifierTable {
     period_s: f64,
     #[serde(deserialize_with = "quantity::lead_s")]
     lead_s: f64,
-    /// By default 10 s, or the whole of a shorter window.
+    /// By default 30 s, or the whole of a shorter window.
     #[serde(deserialize_with = "minimum_s")]
     minimum_s: Option<f64>,
     #[serde(deserialize_with = "quantity::dictionary")]
@@ -106,7 +106,7 @@ impl Default for IdentifierTable {
     fn default() -> Self {
         let IdentifierSettings { window_s, period_s, lead_s, dictionary, safety, .. } = Default::default();
         Self {
-            method: Some(Method::default()),
+            method: Some(Method::Whittle),
             window_s,
             period_s,
             lead_s,
@@ -140,11 +140,10 @@ pub(super) fn identifier<'de, D: Deserializer<'de>>(deserializer: D) -> Result<I
             return Err(D::Error::custom(message));
         }
         (None, None) => return Err(D::Error::custom("method \"fixed\" needs the key `flexure`")),
-        (None, Some(f)) => IdentifierMethod::Fixed(std::array::from_fn(|i| Flexure {
-            mu: f.mu_per_s[i],
-            b: f.b_rad_per_s[i],
-            sigma: f.sigma_arcsec[i],
-        })),
+        (None, Some(f)) => {
+            let axis = |i| Flexure { mu: f.mu_per_s[i], b: f.b_rad_per_s[i], sigma: f.sigma_arcsec[i] };
+            IdentifierMethod::Fixed([0, 1, 2].map(axis).into())
+        }
     };
     let IdentifierTable { window_s, period_s, lead_s, dictionary, safety, .. } = table;
     let minimum_s = table.minimum_s.unwrap_or(IdentifierSettings::default().minimum_s.min(window_s));

@@ -102,9 +102,9 @@ fn methods(areas: &[Area], document: &Document, faults: &mut Vec<ConfigurationEr
         part("filter", matching.filters().contains(&told.filter), names_of(matching.filters()));
         part("delay", told.delay.is_none() || matching.takes_delay(), "no delay".into());
         part("network", told.network.is_none() || matching.takes_network(), "no network".into());
-        part("range", matching.ranges().contains(&told.range), names_of(matching.ranges()));
+        part("range", matching.ranges().contains(&told.range()), names_of(matching.ranges()));
         let factor = format!("area[{i}].estimator.range_factor");
-        if document.has(&factor) && !matches!(told.range, RangeMethod::ErrorRange | RangeMethod::Coherence) {
+        if document.has(&factor) && !matches!(told.range(), RangeMethod::ErrorRange | RangeMethod::Coherence) {
             let message = "goes with range = \"error_range\" or \"coherence\" only";
             faults.push(document.fault(&factor, message));
         }

@@ -60,8 +60,8 @@ fn units_of_measure_become_si() {
     assert!(close(installation.sigma, 0.5 * DEGREE));
     assert!((installation.rotation.log() - Vec3::new(DEGREE, 2.0 * DEGREE, 3.0 * DEGREE)).norm() < 1e-14);
     assert!(close(area.estimator.static_rate_noise, 2.0 * (DEGREE / 3600.0).powi(2)));
-    let IdentifierMethod::Fixed(flexure) = area.identifier.method else { panic!("not fixed") };
-    assert_eq!(flexure[1], Flexure { mu: 0.2, b: 0.5, sigma: 120.0 * ARCSEC });
+    let IdentifierMethod::Fixed(hull) = area.identifier.method else { panic!("not fixed") };
+    assert_eq!(hull.modes[1], Flexure { mu: 0.2, b: 0.5, sigma: 120.0 * ARCSEC });
     assert_eq!((area.identifier.window_s, area.identifier.dictionary), (100.0, 3));
     assert_eq!((c.run.seed, c.run.duration_s, c.run.scheduling), (9, Some(60.0), SchedulingChoice::Fifo));
 }

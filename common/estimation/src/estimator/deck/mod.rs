@@ -19,7 +19,7 @@ use crate::flexure::Hull;
 use crate::matching::View;
 use crate::matching::deck::Options;
 use crate::matching::increment::{Increment, Increments};
-use frames::{Main, Rot, Sub, Vec3, unit};
+use frames::{Main, Rot, Vec3, unit};
 use history::History;
 use messages::{Flags, FlexureParams, ImuPair, Solution};
 use nalgebra::Matrix3;
@@ -43,6 +43,9 @@ const LATEST_WINDOW_S: f64 = 10.0;
 const MARGIN: f64 = 1.2;
 /// Deviations that hold 95 % of a normal error.
 const DEVIATIONS: f64 = 1.96;
+/// The slow filter starts so long after the fast one, s: how large the slow part of the flexure is, no shorter window tells. From the first two minutes
+/// on it put 100 arcsec into the demonstration.
+const SLOW_FROM_S: f64 = 600.0;
 /// The delay is registered from so much data, s.
 const DELAY_DATA_S: f64 = 60.0;
 
@@ -180,7 +183,11 @@ impl DeckEstimator {
         if self.evaluation.hidden().is_none() {
             return;
         }
-        let (Some(live), Some(origin), Some(felt)) = (&self.live, &self.origin, felt) else { return };
+        let since_s = unit::seconds(time_ns.saturating_sub(self.started_ns));
+        let (Some(live), Some(origin), Some(felt)) = (&self.live, &self.origin, felt.filter(|_| since_s > SLOW_FROM_S))
+        else {
+            return;
+        };
         let Some(now) = live.deck.together().filter(|_| !live.is_coasting()) else { return };
         let hull = self.hull(origin);
         let new = || Box::new(Slow::new(&self.settings, live.deck.so3(), &hull));
@@ -191,18 +198,12 @@ impl DeckEstimator {
 
     /// By how much the deformation is turned by what the slow motion shows and the waves hide, and the half width of its range; `None` where the range
     /// does not reckon with that. `own` is the covariance of the fast filter's deformation.
-    fn corrected(&self, deformation: Rot<Main, Sub>, own: &Matrix3<f64>) -> Option<(Rot<Main, Main>, [f64; 3])> {
+    fn corrected(&self, live: &Running, own: &Matrix3<f64>) -> Option<(Rot<Main, Main>, [f64; 3])> {
         let hidden = self.evaluation.hidden()?;
-        let (slow, seen) = self.slow.as_ref()?.deformation()?;
-        let fast = own + Matrix3::from_diagonal(&hidden.component_mul(&hidden));
-        let gain = fast * (fast + seen).try_inverse()?;
-        let both = (Matrix3::identity() - gain) * fast;
+        let known = own + Matrix3::from_diagonal(&hidden.component_mul(&hidden));
+        let (turn, covariance) = self.slow.as_ref()?.correct(live.deck.so3(), live.deck.together()?, &known)?;
         let triad = self.settings.area.grade.triad_variance();
-        let turn = gain * (slow * deformation.inverse()).log().column();
-        Some((
-            Rot::exp(Vec3::from_column(turn)),
-            both.diagonal().map(|variance| DEVIATIONS * (variance + triad).sqrt()).into(),
-        ))
+        Some((turn, covariance.diagonal().map(|variance| DEVIATIONS * (variance + triad).sqrt()).into()))
     }
 
     /// Collects motion until it shows the installation; then a filter starts.
@@ -337,7 +338,7 @@ impl DeckEstimator {
         let dynamic_rows = rows - static_rows;
         let so3 = running.deck.so3();
 
-        let (turn, seen) = self.corrected(deformation, &own).unzip();
+        let (turn, seen) = self.corrected(running, &own).unzip();
         let turn = turn.unwrap_or(Rot::identity());
         let (deformation, static_part) = (turn * deformation, turn * static_part);
         solution.q = deformation.quaternion();
