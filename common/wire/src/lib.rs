@@ -6,6 +6,7 @@
 //! | [`Framer`] | frames out of a stream, found again after garbage |
 //! | [`Detector`] | which device a stream looks like |
 //! | [`Clock`] | a device's time as the host's, by a filter of two states |
+//! | [`raw`] | a stream kept with its times of arrival |
 //! | [`Unit`] | all of it together: bytes with the time of their arrival in, samples with their time of validity out |
 //!
 //! Pure: no port, no clock and no thread. The same bytes with the same times of arrival give the same samples.
@@ -21,6 +22,8 @@ mod device;
 mod framer;
 pub mod kvh;
 mod line;
+mod port;
+pub mod raw;
 mod reading;
 pub mod stdbin;
 pub mod stim300;
@@ -30,4 +33,5 @@ pub use clock::Clock;
 pub use detector::Detector;
 pub use device::{Angle, Device, Family, Rotation};
 pub use framer::{Counts, Framer, Look, Protocol};
+pub use port::Port;
 pub use unit::{Complaint, Heard, Settings, Tally, Unit};
