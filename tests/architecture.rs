@@ -79,7 +79,7 @@ fn the_layers_import_downwards_only() {
             &["deckflex-frames", "deckflex-messages", "deckflex-estimation", "deckflex-simulation", "deckflex-wire"],
         ),
         ("deckflex-wire", &["deckflex-frames", "deckflex-messages"]),
-        ("deckflex-runtime", &["deckflex-frames", "deckflex-messages"]),
+        ("deckflex-runtime", &["deckflex-frames", "deckflex-messages", "deckflex-wire"]),
         (
             "deckflex-experiments",
             &[
@@ -87,7 +87,6 @@ fn the_layers_import_downwards_only() {
                 "deckflex-messages",
                 "deckflex-estimation",
                 "deckflex-simulation",
-                "deckflex-wire",
                 "deckflex-pipeline",
             ],
         ),
