@@ -83,8 +83,10 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
-    /// Stage: simulated units (started by launch)
-    Simulate(StageArgs),
+    /// Stage: simulated units (started by launch); with --wire a program of its own that speaks the units' protocols on their ports
+    Simulate(SimulateArgs),
+    /// Stage: units on wires (started by launch)
+    Acquire(StageArgs),
     /// Stage: recorded units (started by launch)
     Replay(StageArgs),
     /// Stage: one area's samples onto the main unit's instants (started by launch)
@@ -111,6 +113,53 @@ struct StageArgs {
     resume: bool,
     #[arg(long, value_parser = humantime::parse_duration)]
     duration: Option<Duration>,
+}
+
+#[derive(Args)]
+struct SimulateArgs {
+    configuration: PathBuf,
+    /// Speak the protocols of the configured devices on their serial ports and sockets
+    #[arg(long)]
+    wire: bool,
+    #[command(flatten)]
+    wires: WireArgs,
+    #[arg(long, value_name = "DIR", required_unless_present = "wire")]
+    domain: Option<PathBuf>,
+    #[arg(long, default_value_t = 1)]
+    run_id: u64,
+    #[arg(long, value_name = "NS", default_value_t = 0)]
+    epoch_ns: i64,
+    #[arg(long)]
+    resume: bool,
+    #[arg(long, value_parser = humantime::parse_duration)]
+    duration: Option<Duration>,
+}
+
+/// How the emulated wires behave.
+#[derive(Args)]
+struct WireArgs {
+    /// Mean of the delays beyond the least one
+    #[arg(long, requires = "wire", default_value = "100us", value_parser = humantime::parse_duration)]
+    jitter: Duration,
+    /// The least delay from a sample's end to its sending
+    #[arg(long, requires = "wire", default_value = "1ms", value_parser = humantime::parse_duration)]
+    latency: Duration,
+    /// By how much the main unit's clock is fast and the others' are slow
+    #[arg(long, requires = "wire", value_name = "PPM", default_value_t = 50.0, allow_negative_numbers = true)]
+    skew_ppm: f64,
+    /// Format of KVH units
+    #[arg(long, requires = "wire", default_value = "b")]
+    kvh_format: KvhFormat,
+    /// Write the true deformation and the true times of all samples
+    #[arg(long, requires = "wire", value_name = "DIR")]
+    truth: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum KvhFormat {
+    A,
+    B,
+    C,
 }
 
 #[derive(Args)]
@@ -142,7 +191,8 @@ fn main() -> ExitCode {
             let plan = reproduce::Plan { trials, seed, quick };
             reproduce(&reproduce::Options { selection, plan, json, report, threads })
         }
-        Command::Simulate(args) => stage(&args, simulate::run),
+        Command::Simulate(args) => simulate(args),
+        Command::Acquire(args) => stage(&args, acquire::run),
         Command::Replay(args) => stage(&args, replay::run),
         Command::Synchronise(args) => of_area(&args, synchronise::run),
         Command::Estimate(args) => of_area(&args, estimate::run),
@@ -155,12 +205,15 @@ fn main() -> ExitCode {
 fn failed(error: &(dyn Error + 'static)) -> ExitCode {
     eprintln!("deckflex: {error}");
     let poisoned = error.downcast_ref::<TransportError>().is_some_and(TransportError::is_poisoned)
-        || matches!(error.downcast_ref(), Some(replay::ReplayError::Transport(error)) if error.is_poisoned());
+        || matches!(error.downcast_ref(), Some(replay::ReplayError::Transport(error)) if error.is_poisoned())
+        || matches!(error.downcast_ref(), Some(acquire::AcquireError::Transport(error)) if error.is_poisoned());
     let unusable = error.is::<pipeline::configuration::ConfigurationError>()
         || error.is::<check::CheckError>()
         || matches!(error.downcast_ref(), Some(bound::BoundError::Configuration(_)))
         || matches!(error.downcast_ref(), Some(process::ProcessError::Recording(_)))
         || matches!(error.downcast_ref(), Some(replay::ReplayError::Recording(_)))
+        || error.downcast_ref().is_some_and(acquire::AcquireError::is_lasting)
+        || error.is::<simulate::EmulatorError>()
         || error.is::<NoSuchArea>()
         || error.is::<Endless>();
     match (poisoned, unusable) {
@@ -219,7 +272,9 @@ fn check_recordings(path: &std::path::Path) -> Result<(), check::CheckError> {
 }
 
 fn check(path: PathBuf) -> Outcome {
-    println!("{}", check::run(&path)?);
+    let report = check::run(&path)?;
+    println!("{report}");
+    check::listen(&report.configuration).for_each(|listened| println!("{listened}"));
     Ok(ExitCode::SUCCESS)
 }
 
@@ -239,6 +294,30 @@ fn stage<E: Into<Box<dyn Error>>>(
 ) -> Outcome {
     let configuration = read(&args.configuration, args.duration)?;
     run(&configuration, &context(&configuration, args)).map_err(Into::into)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn simulate(args: SimulateArgs) -> Outcome {
+    let SimulateArgs { configuration, wire, wires, domain, run_id, epoch_ns, resume, duration } = args;
+    let Some(domain) = domain.filter(|_| !wire) else { return emulate(&configuration, duration, wires) };
+    stage(&StageArgs { configuration, domain, run_id, epoch_ns, resume, duration }, simulate::run)
+}
+
+fn emulate(path: &std::path::Path, duration: Option<Duration>, wires: WireArgs) -> Outcome {
+    let options = simulate::Options {
+        jitter_s: wires.jitter.as_secs_f64(),
+        latency_s: wires.latency.as_secs_f64(),
+        skew: wires.skew_ppm * 1e-6,
+        kvh_format: match wires.kvh_format {
+            KvhFormat::A => simulate::KvhFormat::A,
+            KvhFormat::B => simulate::KvhFormat::B,
+            KvhFormat::C => simulate::KvhFormat::C,
+        },
+        truth: wires.truth,
+    };
+    let emulator = simulate::Emulator::open(&read(path, duration)?, options)?;
+    println!("{emulator}");
+    emulator.run()?;
     Ok(ExitCode::SUCCESS)
 }
 

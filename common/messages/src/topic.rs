@@ -2,19 +2,20 @@
 //!
 //! | topic | type | publisher | depth | history |
 //! |---|---|---|---|---|
-//! | `main/imu` | [`ImuSample`] | simulate or replay | 2048 | 0 |
-//! | `main/attitude` | [`MainAttitude`] | simulate or replay | 2048 | 0 |
-//! | `area/<name>/imu` | [`ImuSample`] | simulate or replay | 2048 | 0 |
+//! | `main/imu` | [`ImuSample`] | simulate, replay or acquire | 2048 | 0 |
+//! | `main/attitude` | [`MainAttitude`] | simulate, replay or acquire | 2048 | 0 |
+//! | `area/<name>/imu` | [`ImuSample`] | simulate, replay or acquire | 2048 | 0 |
 //! | `area/<name>/truth` | [`Truth`] | simulate | 2048 | 0 |
 //! | `area/<name>/pair` | [`ImuPair`] | synchronise | 2048 | 0 |
 //! | `area/<name>/solution` | [`Solution`] | estimate | 2048 | 0 |
 //! | `area/<name>/parameters` | [`FlexureParams`] | identify | 16 | 1 |
+//! | `line/main`, `line/area/<name>` | [`LineHealth`] | acquire | 16 | 1 |
 //! | `health/<stage>[/<name>]` | [`Health`] | each stage | 16 | 1 |
 //!
 //! Depth is the number of messages a reader may fall behind before the oldest are dropped: 20 s at 100 Hz. History is what a
 //! reader that comes later still gets: 1 makes the topic latched.
 
-use crate::{FlexureParams, Health, ImuPair, ImuSample, MainAttitude, Message, Solution, Stage, Truth};
+use crate::{FlexureParams, Health, ImuPair, ImuSample, LineHealth, MainAttitude, Message, Solution, Stage, Truth};
 use std::marker::PhantomData;
 
 /// A topic: a name and the quality of service that all its users share.
@@ -69,6 +70,15 @@ pub fn solution(area: &str) -> Topic<Solution> {
 /// The flexure parameters of an area.
 pub fn parameters(area: &str) -> Topic<FlexureParams> {
     topic(format!("area/{area}/parameters"), LATCHED)
+}
+
+/// The wire of a unit; `area` is `None` for the main unit.
+pub fn line(area: Option<&str>) -> Topic<LineHealth> {
+    let name = match area {
+        Some(area) => format!("line/area/{area}"),
+        None => "line/main".into(),
+    };
+    topic(name, LATCHED)
 }
 
 /// The health of a stage; `area` is `None` for the sources, which serve all.

@@ -50,11 +50,12 @@ impl Source {
     /// The source that the configuration names.
     ///
     /// # Errors
-    /// A recording cannot be opened or its columns are not known.
+    /// A recording cannot be opened or its columns are not known, or the units are on wires.
     pub fn open(configuration: &Configuration, run_id: u64) -> Result<Self, RecordingError> {
         match &configuration.main.source {
             Kind::Simulator => Ok(Self::Simulated(Box::new(Simulator::new(&configuration.scenario(run_id))))),
             Kind::Csv(_) => Recorded::open(configuration, run_id).map(|recorded| Self::Recorded(Box::new(recorded))),
+            source @ Kind::Line(_) => Err(RecordingError::Live(source.kind())),
         }
     }
 
@@ -101,7 +102,7 @@ impl Recorded {
         }
         let mut main = match &configuration.main.source {
             Kind::Csv(path) => Some(open(path, 0)?),
-            Kind::Simulator => None,
+            Kind::Simulator | Kind::Line(_) => None,
         };
         let next = main.as_mut().and_then(Iterator::next);
         let duration_ns = configuration.run.duration_s.map_or(i64::MAX, nanoseconds);

@@ -1,4 +1,4 @@
-use crate::{Connection, Publisher, TransportError, monotonic_ns, sleep_until};
+use crate::{Connection, Node, Publisher, TransportError, monotonic_ns, sleep_until};
 use messages::{Header, ImuSample, MainAttitude, Truth, topic};
 
 /// A source that has had nothing to send stays for so long after its end marks, ns.
@@ -50,6 +50,41 @@ impl Feed {
     pub fn skip(&mut self, delivery: &Delivery<'_>) {
         self.ordinals[0] += 1;
         delivery.sub.iter().for_each(|sample| self.ordinals[sample.unit as usize] += 1);
+    }
+
+    /// Publishes one unit's sample by itself, as it comes, due at its own time of validity; the main unit's after its attitude.
+    ///
+    /// # Errors
+    /// As [`Publisher::publish`].
+    pub fn publish_one(&mut self, sample: &ImuSample, attitude: Option<&MainAttitude>) -> Result<(), TransportError> {
+        if let Some(attitude) = attitude {
+            self.attitude.publish(attitude)?;
+        }
+        let stamped = self.stamped(sample, sample.header.time_ns);
+        if sample.unit > 0 {
+            self.areas[sample.unit as usize - 1].publish(&stamped)?;
+            return Ok(());
+        }
+        self.main.publish(&stamped)?;
+        self.last = stamped.header;
+        let beat = &mut self.connection.beat;
+        beat.handled(&stamped.header);
+        beat.health.taken += 1;
+        beat.health.given += 1;
+        Ok(())
+    }
+
+    /// Publishes the source's health if a second has passed; for a source without a main sample at hand.
+    ///
+    /// # Errors
+    /// As [`Publisher::publish`].
+    pub fn tick(&mut self) -> Result<(), TransportError> {
+        self.connection.beat.tick(monotonic_ns())
+    }
+
+    /// On which the source may open further topics.
+    pub fn node(&self) -> &Node {
+        &self.connection.node
     }
 
     /// Publishes a delivery that was due at `due_ns`; the main sample last, so that with it everything is there.

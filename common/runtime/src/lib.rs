@@ -29,6 +29,7 @@ mod error;
 mod feed;
 mod gap;
 mod latency;
+pub mod line;
 mod node;
 mod owner;
 mod port;

@@ -1,7 +1,9 @@
 //! Checks a configuration and the head of each recording.
 
+mod listen;
 mod report;
 
+pub use listen::{Listened, listen};
 pub use report::{Report, Unit};
 
 use pipeline::configuration::{Configuration, ConfigurationError, Source};

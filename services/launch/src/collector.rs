@@ -1,5 +1,6 @@
 //! What the launcher hears of its set: solutions, parameters, truth and health; latencies and files come of it.
 
+use crate::lines::Lines;
 use crate::recorded::Recorded;
 use crate::report::{AreaRow, Percentiles, Report, StageRow};
 use crate::set::Role;
@@ -61,6 +62,7 @@ pub struct Collector {
     health: HashMap<Role, Counted>,
     source: Role,
     source_latency: Recorded,
+    lines: Lines,
     out: Option<PathBuf>,
     cut_short: bool,
 }
@@ -108,6 +110,7 @@ impl Collector {
         let stage = match configuration.main.source {
             Source::Simulator => Stage::Simulate,
             Source::Csv(_) => Stage::Replay,
+            Source::Line(_) => Stage::Acquire,
         };
         let hlog = options.hlog.as_deref();
         let areas = configuration
@@ -120,6 +123,7 @@ impl Collector {
             health: HashMap::new(),
             source: Role { stage, area: None },
             source_latency: Recorded::new(hlog, stage.name())?,
+            lines: Lines::new(configuration),
             out: options.out.clone(),
             cut_short: false,
         })
@@ -146,11 +150,13 @@ impl Collector {
         }
         let health = Subscriber::open(node, &topic::health(self.source.stage, None))?;
         ports.health.push((self.source, health));
+        self.lines.connect(node)?;
         Ok(ports)
     }
 
     /// Takes in everything that has come.
     pub fn drain(&mut self, ports: &Ports) -> Result<(), LaunchError> {
+        self.lines.drain()?;
         for (role, port) in &ports.health {
             while let Some(health) = port.take()? {
                 self.health.entry(*role).or_default().update(health);
@@ -207,6 +213,11 @@ impl Collector {
         self.areas.iter().map(|area| (area.name.as_str(), area.last.as_ref()))
     }
 
+    /// The units on wires from which nothing comes, in words.
+    pub fn quiet(&self, now_ns: i64) -> impl Iterator<Item = String> {
+        self.lines.quiet(now_ns)
+    }
+
     /// Median end-to-end latency of the first area so far, microseconds.
     pub fn median_us(&self) -> f64 {
         self.areas[0].end_to_end.whole.summary().p50_us
@@ -248,6 +259,7 @@ impl Collector {
             cut_short: self.cut_short,
             stages,
             end_to_end,
+            lines: self.lines.rows(),
         })
     }
 

@@ -2,12 +2,15 @@
 
 mod collector;
 mod error;
+mod line_row;
+mod lines;
 mod recorded;
 mod report;
 mod set;
 mod status;
 
 pub use error::LaunchError;
+pub use line_row::LineRow;
 pub use report::{AreaRow, Percentiles, Report, StageRow};
 
 use collector::Collector;

@@ -1,5 +1,6 @@
 //! The table at the end of a launch, and the same as JSON.
 
+use crate::line_row::LineRow;
 use runtime::{Latency, Summary};
 use serde::Serialize;
 use std::fmt;
@@ -27,6 +28,8 @@ pub struct Report {
     pub stages: Vec<StageRow>,
     /// One row an area: from the sample's due time to the published solution.
     pub end_to_end: Vec<AreaRow>,
+    /// One row a unit on a wire.
+    pub lines: Vec<LineRow>,
 }
 
 /// A latency in figures, microseconds.
@@ -144,6 +147,7 @@ impl fmt::Display for Report {
             "scheduling obtained: {}; samples missing in the units' own streams: {}, refused: {}",
             self.scheduling, self.missing_samples, self.refused_samples
         )?;
+        self.lines.iter().try_for_each(|line| writeln!(f, "{line}"))?;
         if self.cut_short {
             writeln!(f, "the streams did not end in time and were cut short")?;
         }

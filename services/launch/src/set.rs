@@ -61,6 +61,7 @@ impl Set {
         let stage = match configuration.main.source {
             Source::Simulator => Stage::Simulate,
             Source::Csv(_) => Stage::Replay,
+            Source::Line(_) => Stage::Acquire,
         };
         let areas = configuration.areas.iter().map(|area| area.name.clone()).collect();
         let mut set = Self {

@@ -46,6 +46,9 @@ impl Status {
             }
             let _ = write!(text, " | {name} {}", deformation(last));
         }
+        for words in collector.quiet(now_ns) {
+            let _ = write!(text, " | {words}");
+        }
         let restarts: u64 = set.restarts().iter().map(|(_, n)| n).sum();
         let _ = write!(text, " | {:.0} us end to end", collector.median_us());
         if restarts > 0 {

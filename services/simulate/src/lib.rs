@@ -1,5 +1,9 @@
 //! `deckflex simulate`: the simulated units in the place of real ones, paced by absolute deadlines.
 
+mod emulator;
+
+pub use emulator::{Emulator, EmulatorError, KvhFormat, Options};
+
 use messages::Stage;
 use pipeline::configuration::Configuration;
 use runtime::{Context, Delivery, Feed, TransportError, monotonic_ns, sleep_until};

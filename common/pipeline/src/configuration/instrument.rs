@@ -1,11 +1,13 @@
 //! What the configuration says about an inertial unit: its source, its grade and how it is mounted.
 
+use super::line::{Line, SourceTable};
 use super::{quantity, table};
 use frames::{Case, Frame, Rot, Vec3};
 use nalgebra::Matrix3;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 use std::path::PathBuf;
+use wire::Family;
 
 /// Where the samples of a unit come from.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,6 +16,8 @@ pub enum Source {
     Csv(PathBuf),
     /// The simulator.
     Simulator,
+    /// A device at the end of a wire.
+    Line(Line),
 }
 
 impl Source {
@@ -22,32 +26,54 @@ impl Source {
         match self {
             Self::Csv(_) => "csv",
             Self::Simulator => "simulator",
+            Self::Line(line) => line.device.family().name(),
+        }
+    }
+
+    /// What stands at the end of the wire, if it is one.
+    pub fn line(&self) -> Option<&Line> {
+        match self {
+            Self::Line(line) => Some(line),
+            Self::Csv(_) | Self::Simulator => None,
         }
     }
 }
 
-#[derive(Deserialize)]
+#[derive(Clone, Copy, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Kind {
+pub(super) enum Kind {
     Csv,
     Simulator,
+    Kvh,
+    Stdbin,
+    Stim300,
 }
 
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct SourceTable {
-    kind: Kind,
-    path: Option<PathBuf>,
+impl Kind {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Simulator => "simulator",
+            Self::Kvh => Family::Kvh.name(),
+            Self::Stdbin => Family::Stdbin.name(),
+            Self::Stim300 => Family::Stim300.name(),
+        }
+    }
 }
 
-/// The path is still the one that stands in the file.
+/// The paths are still those that stand in the file.
 pub(super) fn source<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Source, D::Error> {
-    let source: SourceTable = table::one(deserializer)?;
-    match (source.kind, source.path) {
-        (Kind::Csv, Some(path)) => Ok(Source::Csv(path)),
+    let table: SourceTable = table::one(deserializer)?;
+    let (kind, name) = (table.kind, table.kind.name());
+    if let (Kind::Csv | Kind::Simulator, Some(key)) = (kind, table.line_key()) {
+        return Err(D::Error::custom(format!("a source of kind \"{name}\" has no `{key}`")));
+    }
+    match (kind, &table.path) {
+        (Kind::Csv, Some(path)) => Ok(Source::Csv(path.clone())),
         (Kind::Csv, None) => Err(D::Error::custom("a source of kind \"csv\" needs the key `path`")),
+        (_, Some(_)) => Err(D::Error::custom(format!("a source of kind \"{name}\" has no `path`"))),
         (Kind::Simulator, None) => Ok(Source::Simulator),
-        (Kind::Simulator, Some(_)) => Err(D::Error::custom("a source of kind \"simulator\" has no `path`")),
+        (_, None) => table.line().map(Source::Line).map_err(D::Error::custom),
     }
 }
 

@@ -9,6 +9,7 @@ mod events;
 mod flexure;
 mod identifier;
 mod instrument;
+mod line;
 mod model_free;
 mod quantity;
 mod rules;
@@ -25,8 +26,10 @@ pub use error::ConfigurationError;
 pub use estimator::{EstimatorSettings, FilterMethod, MatchingMethod, RangeMethod, RegistrationMethod};
 pub use identifier::{IdentifierMethod, IdentifierSettings};
 pub use instrument::{Accel, Gyro, Source};
+pub use line::Line;
 pub use model_free::{DelaySettings, NetworkInput, NetworkSettings};
 pub use simulation::{Ins, Simulation, Wire};
+pub use wire::Port;
 
 use document::Document;
 use serde::{Deserialize, Deserializer};

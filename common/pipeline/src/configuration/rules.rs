@@ -1,7 +1,7 @@
 //! Rules that more than one key takes part in.
 
 use super::document::Document;
-use super::{Area, Configuration, ConfigurationError, RangeMethod, RegistrationMethod, Source};
+use super::{Area, Configuration, ConfigurationError, Port, RangeMethod, RegistrationMethod, Source};
 use std::path::Path;
 
 /// Makes the paths of the recordings absolute and checks the whole; all faults are reported.
@@ -25,21 +25,31 @@ pub(super) fn apply(configuration: &mut Configuration, document: &Document) -> R
 }
 
 fn locate(source: &mut Source, folder: &Path, unit: &str, document: &Document) -> Option<ConfigurationError> {
-    let Source::Csv(path) = source else { return None };
+    let (key, path) = match source {
+        Source::Simulator => return None,
+        Source::Csv(path) => ("path", path),
+        Source::Line(line) => {
+            line.raw.iter_mut().for_each(|raw| *raw = folder.join(&*raw));
+            let Port::File(path) = &mut line.port else { return None };
+            ("file", path)
+        }
+    };
     *path = folder.join(&*path);
     let reason = match std::fs::metadata(&*path) {
         Ok(data) if data.is_dir() => "it is a folder".to_string(),
         Ok(_) => return None,
         Err(error) => error.to_string(),
     };
-    Some(document.fault(&format!("{unit}.source.path"), &format!("cannot read {}: {reason}", path.display())))
+    Some(document.fault(&format!("{unit}.source.{key}"), &format!("cannot read {}: {reason}", path.display())))
 }
 
 fn sources(configuration: &Configuration, document: &Document, faults: &mut Vec<ConfigurationError>) {
-    let kind = configuration.main.source.kind();
+    let main = &configuration.main.source;
+    let kind = main.kind();
     for (i, area) in configuration.areas.iter().enumerate() {
-        if area.source.kind() != kind {
-            let message = format!("all sources must be of one kind, and [main] has \"{kind}\"");
+        if std::mem::discriminant(&area.source) != std::mem::discriminant(main) {
+            let others = if main.line().is_some() { "devices on wires" } else { "of one kind" };
+            let message = format!("all sources must be {others}, and [main] has \"{kind}\"");
             faults.push(document.fault(&format!("area[{i}].source.kind"), &message));
         }
     }
@@ -48,11 +58,30 @@ fn sources(configuration: &Configuration, document: &Document, faults: &mut Vec<
             faults.push(document.fault(key, &format!("has no effect with sources of kind \"{kind}\"")));
         }
     };
-    if kind == "csv" {
+    // what is simulated can also be put on the wires
+    if let Source::Csv(_) = main {
         useless("simulation");
         (0..configuration.areas.len()).for_each(|i| useless(&format!("area[{i}].simulation")));
     } else {
         useless("replay");
+    }
+    ports(configuration, document, faults);
+}
+
+/// No two units can listen at one port.
+fn ports(configuration: &Configuration, document: &Document, faults: &mut Vec<ConfigurationError>) {
+    let areas = configuration.areas.iter().map(|area| &area.source);
+    let ports: Vec<_> =
+        std::iter::once(&configuration.main.source).chain(areas).map(|s| s.line().map(|l| &l.port)).collect();
+    for (unit, port) in ports.iter().enumerate().skip(1) {
+        let same = |other: &&Option<&Port>| match (port, other) {
+            (Some(Port::Serial { path: a, .. }), Some(Port::Serial { path: b, .. })) => a == b,
+            (Some(a), Some(b)) => a == b,
+            _ => false,
+        };
+        if ports[..unit].iter().any(|other| same(&other)) {
+            faults.push(document.fault(&format!("area[{}].source", unit - 1), "another unit has the same port"));
+        }
     }
 }
 

@@ -48,6 +48,9 @@ pub enum RecordingError {
         /// Rows that cannot be parsed.
         refused: u64,
     },
+    /// Units on wires have no recording.
+    #[error("sources of kind \"{0}\" give their samples live, to `launch`")]
+    Live(&'static str),
 }
 
 /// What has been read so far.

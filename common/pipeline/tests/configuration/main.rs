@@ -1,6 +1,7 @@
 //! Configurations: what is read, in which units, and what each mistake is told.
 
 mod events;
+mod lines;
 mod messages;
 mod papers;
 mod rules;
