@@ -26,7 +26,8 @@ fn layouts_are_as_published() {
         dynamic @ 216, rate @ 240, drift @ 264, scale @ 288, covariance @ 336, static_covariance @ 408, dynamic_covariance @ 480,
         registered @ 552, registered_sigma @ 584, delay @ 608, skew_sigma @ 632, range @ 640, deck @ 664, deck_sigma @ 696, area @ 720, valid @ 724, flags @ 728);
     layout!(Truth, "deckflex/Truth/1", 208, q @ 80, static_q @ 112, dynamic @ 144, ship @ 168, area @ 200);
-    layout!(Health, "deckflex/Health/1", 176, taken @ 80, late @ 136, stage @ 152, pid @ 168);
+    layout!(Health, "deckflex/Health/2", 176, taken @ 80, late @ 136, stage @ 152, pid @ 168, alarms @ 172);
+    layout!(OutputState, "deckflex/OutputState/1", 192, sent @ 80, utc_offset_ns @ 120, delay_p50_ns @ 152, utc_source @ 176, open @ 188);
 }
 
 #[test]
@@ -37,7 +38,7 @@ fn flags_have_the_names_of_the_files() {
 
 #[test]
 fn codes_come_back() {
-    for stage in [Stage::Simulate, Stage::Replay, Stage::Synchronise, Stage::Estimate, Stage::Identify] {
+    for stage in [Stage::Simulate, Stage::Replay, Stage::Synchronise, Stage::Estimate, Stage::Identify, Stage::Output] {
         assert_eq!(Stage::from_code(stage as u32), Some(stage));
     }
     assert_eq!(State::from_code(99), None);
