@@ -93,6 +93,8 @@ enum Command {
     Estimate(AreaArgs),
     /// Stage: one area's flexure parameters (started by launch)
     Identify(AreaArgs),
+    /// Stage: telegrams on the ship's wires (started by launch where the configuration has outputs)
+    Output(StageArgs),
 }
 
 #[derive(Args)]
@@ -147,6 +149,7 @@ fn main() -> ExitCode {
         Command::Synchronise(args) => of_area(&args, synchronise::run),
         Command::Estimate(args) => of_area(&args, estimate::run),
         Command::Identify(args) => of_area(&args, identify::run),
+        Command::Output(args) => stage(&args, output::run),
     };
     outcome.unwrap_or_else(|error| failed(error.as_ref()))
 }
@@ -155,12 +158,14 @@ fn main() -> ExitCode {
 fn failed(error: &(dyn Error + 'static)) -> ExitCode {
     eprintln!("deckflex: {error}");
     let poisoned = error.downcast_ref::<TransportError>().is_some_and(TransportError::is_poisoned)
-        || matches!(error.downcast_ref(), Some(replay::ReplayError::Transport(error)) if error.is_poisoned());
+        || matches!(error.downcast_ref(), Some(replay::ReplayError::Transport(error)) if error.is_poisoned())
+        || matches!(error.downcast_ref(), Some(output::OutputError::Transport(error)) if error.is_poisoned());
     let unusable = error.is::<pipeline::configuration::ConfigurationError>()
         || error.is::<check::CheckError>()
         || matches!(error.downcast_ref(), Some(bound::BoundError::Configuration(_)))
         || matches!(error.downcast_ref(), Some(process::ProcessError::Recording(_)))
         || matches!(error.downcast_ref(), Some(replay::ReplayError::Recording(_)))
+        || matches!(error.downcast_ref(), Some(output::OutputError::Destination { .. }))
         || error.is::<NoSuchArea>()
         || error.is::<Endless>();
     match (poisoned, unusable) {

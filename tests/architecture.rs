@@ -75,7 +75,16 @@ fn the_layers_import_downwards_only() {
         ("deckflex-estimation", &["deckflex-frames", "deckflex-messages"]),
         ("deckflex-simulation", &["deckflex-frames", "deckflex-messages"]),
         ("deckflex-telegrams", &["deckflex-frames", "deckflex-messages"]),
-        ("deckflex-pipeline", &["deckflex-frames", "deckflex-messages", "deckflex-estimation", "deckflex-simulation"]),
+        (
+            "deckflex-pipeline",
+            &[
+                "deckflex-frames",
+                "deckflex-messages",
+                "deckflex-estimation",
+                "deckflex-simulation",
+                "deckflex-telegrams",
+            ],
+        ),
         ("deckflex-runtime", &["deckflex-frames", "deckflex-messages"]),
         (
             "deckflex-experiments",

@@ -30,5 +30,5 @@ pub use motion::{LONGEST_NS, Motion};
 pub use report::{Deformation, Report};
 pub use sentence::{Sentence, Style};
 pub use talker::Talker;
-pub use track::{Moment, Track};
+pub use track::{Moment, Track, instant_ns};
 pub use utc::{UtcMap, time_of_day};

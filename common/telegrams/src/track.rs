@@ -66,7 +66,7 @@ impl Track {
 }
 
 /// When a message's data were valid, on the host's monotonic clock: where its own time is of another clock, when its sample was due.
-fn instant_ns(header: &Header) -> i64 {
+pub fn instant_ns(header: &Header) -> i64 {
     if header.clock_domain == ClockDomain::HostMonotonic as u32 { header.time_ns } else { header.stamps.due_ns }
 }
 

@@ -1,5 +1,6 @@
 //! The configuration: one TOML file whose keys carry their unit; SI units from here on.
 
+mod alarm;
 mod area;
 mod area_simulation;
 mod document;
@@ -10,6 +11,7 @@ mod flexure;
 mod identifier;
 mod instrument;
 mod model_free;
+mod output;
 mod quantity;
 mod rules;
 mod scenario;
@@ -19,6 +21,7 @@ mod swing;
 mod table;
 mod unit_errors;
 
+pub use alarm::AlarmLimits;
 pub use area::{Area, Installation, MainUnit};
 pub use area_simulation::AreaSimulation;
 pub use error::ConfigurationError;
@@ -26,6 +29,7 @@ pub use estimator::{EstimatorSettings, FilterMethod, MatchingMethod, RangeMethod
 pub use identifier::{IdentifierMethod, IdentifierSettings};
 pub use instrument::{Accel, Gyro, Source};
 pub use model_free::{DelaySettings, NetworkInput, NetworkSettings};
+pub use output::{Destination, Output, Telegrams};
 pub use simulation::{Ins, Simulation, Wire};
 
 use document::Document;
@@ -57,6 +61,9 @@ pub struct Configuration {
     /// The deck areas, at least one.
     #[serde(rename = "area", default, deserialize_with = "table::many")]
     pub areas: Vec<Area>,
+    /// Where telegrams go.
+    #[serde(rename = "output", default, deserialize_with = "table::many")]
+    pub outputs: Vec<Output>,
     /// How the run is carried out.
     #[serde(default, deserialize_with = "table::one")]
     pub run: Run,
