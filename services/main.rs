@@ -34,6 +34,9 @@ enum Command {
         /// Write the solutions, the same files as `process`
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        /// Write the health of all stages for Prometheus's node exporter, every five seconds
+        #[arg(long, value_name = "FILE")]
+        prometheus: Option<PathBuf>,
     },
     /// Run the same steps in one thread without transport, as fast as it goes
     Process {
@@ -131,8 +134,8 @@ type Outcome = Result<ExitCode, Box<dyn Error>>;
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
-        Command::Launch { configuration, duration, json, hlog, out } => {
-            launch(configuration, duration, json, hlog, out)
+        Command::Launch { configuration, duration, json, hlog, out, prometheus } => {
+            launch(configuration, duration, json, hlog, out, prometheus)
         }
         Command::Process { configuration, duration, out } => process(configuration, duration, &out),
         Command::Check { configuration } => check(configuration),
@@ -166,6 +169,7 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
         || matches!(error.downcast_ref(), Some(process::ProcessError::Recording(_)))
         || matches!(error.downcast_ref(), Some(replay::ReplayError::Recording(_)))
         || matches!(error.downcast_ref(), Some(output::OutputError::Destination { .. }))
+        || matches!(error.downcast_ref(), Some(launch::LaunchError::Refused(_)))
         || error.is::<NoSuchArea>()
         || error.is::<Endless>();
     match (poisoned, unusable) {
@@ -189,13 +193,14 @@ fn launch(
     json: Option<PathBuf>,
     hlog: Option<PathBuf>,
     out: Option<PathBuf>,
+    prometheus: Option<PathBuf>,
 ) -> Outcome {
     let configuration = read(&path, duration)?;
     // before any process starts
     check_recordings(&path)?;
     let duration_s = duration.map(|d| d.as_secs_f64());
     let program = std::env::current_exe()?;
-    let options = launch::Options { program, configuration: path, duration_s, out, hlog };
+    let options = launch::Options { program, configuration: path, duration_s, out, hlog, prometheus };
     let report = launch::run(&configuration, &options)?;
     print!("{report}");
     if let Some(json) = json {

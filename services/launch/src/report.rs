@@ -1,5 +1,6 @@
 //! The table at the end of a launch, and the same as JSON.
 
+use crate::OutputRow;
 use runtime::{Latency, Summary};
 use serde::Serialize;
 use std::fmt;
@@ -27,6 +28,8 @@ pub struct Report {
     pub stages: Vec<StageRow>,
     /// One row an area: from the sample's due time to the published solution.
     pub end_to_end: Vec<AreaRow>,
+    /// One row a destination of telegrams.
+    pub outputs: Vec<OutputRow>,
 }
 
 /// A latency in figures, microseconds.
@@ -139,6 +142,7 @@ impl fmt::Display for Report {
                 row.area, row.parameters, row.late_parameters
             )?;
         }
+        self.outputs.iter().try_for_each(|row| writeln!(f, "{row}"))?;
         writeln!(
             f,
             "scheduling obtained: {}; samples missing in the units' own streams: {}, refused: {}",

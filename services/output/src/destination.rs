@@ -6,6 +6,9 @@ use pipeline::configuration::{Configuration, Output, Telegrams};
 use runtime::{HostUtc, Latency, host_utc, monotonic_ns};
 use telegrams::{Cadence, Report, Track, UtcMap, encode_kmb, instant_ns};
 
+/// The least difference that shows in a sentence.
+const MILLISECOND_NS: i64 = 1_000_000;
+
 /// UTC as the host has it.
 pub struct Clock {
     map: UtcMap,
@@ -120,9 +123,11 @@ impl Destination {
         }
     }
 
-    /// The last word.
+    /// The last word, later than even an attitude that was carried forward.
     pub fn end(&mut self, now_ns: i64, clock: &Clock) {
-        self.send(&invalid(now_ns, clock));
+        let mut report = invalid(now_ns, clock);
+        report.utc_ns = report.utc_ns.max(self.last_utc_ns.saturating_add(MILLISECOND_NS));
+        self.send(&report);
         self.line.attend(now_ns);
     }
 

@@ -2,6 +2,7 @@
 
 mod events;
 mod messages;
+mod output;
 mod papers;
 mod rules;
 mod text;
