@@ -188,6 +188,8 @@ fn silence_is_told_and_a_killed_stage_goes_on() {
     send(estimate, SIGCONT);
     since(&mut launch, &receiver, from, 20, "valid telegrams after the silence", Binary::is_valid);
 
+    // the counts are told once a second, and what was not told dies with the process
+    sleep(Duration::from_millis(1500));
     let first = launch.stage("output", None);
     send(first, SIGKILL);
     launch.stage("output", Some(first));

@@ -42,6 +42,7 @@ fn synchronised_within_ns() -> Option<i64> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
     use std::time::{SystemTime, UNIX_EPOCH};

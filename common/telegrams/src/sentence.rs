@@ -32,7 +32,7 @@ pub struct Style {
     pub decimals: usize,
 }
 
-/// What stands between `$` and `*`; the numbers go through [`Number`], so none is ever longer than its field.
+/// What stands between `$` and `*`; its numbers are [`rounded`] first, so none is longer than its field.
 type Body<'a> = &'a mut dyn Write;
 
 impl Sentence {

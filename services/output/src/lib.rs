@@ -46,8 +46,9 @@ impl Destinations {
             destination.attend(newest_ns.unwrap_or(now_ns), now_ns, &self.clock);
         }
         if now_ns - self.told_ns >= SECOND_NS {
-            self.clock.read();
             self.publish(now_ns)?;
+            // last, so that the states tell the greatest age that telegrams were sent with
+            self.clock.read();
         }
         Ok(())
     }
