@@ -26,7 +26,10 @@ fn the_shipped_configuration_is_read() {
     assert_eq!(text.to.to_string(), "udp 127.0.0.1:60001");
     let sentences = vec![Sentence::Hdt, Sentence::Rot, Sentence::Pashr, Sentence::Xdr];
     assert_eq!((&text.telegrams, text.rate_hz, text.decimals), (&Telegrams::Sentences(sentences), 10.0, 3));
-    assert_eq!((&binary.telegrams, binary.rate_hz, binary.extrapolate_s, binary.silence_s), (&Telegrams::Kmb, 100.0, 0.01, 0.2));
+    assert_eq!(
+        (&binary.telegrams, binary.rate_hz, binary.extrapolate_s, binary.silence_s),
+        (&Telegrams::Kmb, 100.0, 0.01, 0.2)
+    );
     let limits = configuration.areas[0].alarm.expect("limits");
     assert_eq!((limits.hold_s, limits.invalid_s), (2.0, Some(5.0)));
     assert!((limits.range.expect("a range")[2] - 3.0 * frames::unit::ARCMIN).abs() < 1e-12);
@@ -36,7 +39,9 @@ fn the_shipped_configuration_is_read() {
         .expect("the shipped configuration")
         .lines()
         .map(|line| match line.strip_prefix("# ") {
-            Some(rest) if ["[[output]]", "area =", "to =", "sentences ="].iter().any(|key| rest.starts_with(key)) => rest.into(),
+            Some(rest) if ["[[output]]", "area =", "to =", "sentences ="].iter().any(|key| rest.starts_with(key)) => {
+                rest.into()
+            }
             _ => line.to_owned(),
         })
         .collect();
