@@ -34,6 +34,9 @@ enum Command {
         /// Write the solutions, the same files as `process`
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        /// Write the health of all stages for Prometheus's node exporter, every five seconds
+        #[arg(long, value_name = "FILE")]
+        prometheus: Option<PathBuf>,
     },
     /// Run the same steps in one thread without transport, as fast as it goes
     Process {
@@ -95,6 +98,8 @@ enum Command {
     Estimate(AreaArgs),
     /// Stage: one area's flexure parameters (started by launch)
     Identify(AreaArgs),
+    /// Stage: telegrams on the ship's wires (started by launch where the configuration has outputs)
+    Output(StageArgs),
 }
 
 #[derive(Args)]
@@ -178,8 +183,8 @@ type Outcome = Result<ExitCode, Box<dyn Error>>;
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
-        Command::Launch { configuration, duration, json, hlog, out } => {
-            launch(configuration, duration, json, hlog, out)
+        Command::Launch { configuration, duration, json, hlog, out, prometheus } => {
+            launch(configuration, duration, json, hlog, out, prometheus)
         }
         Command::Process { configuration, duration, out } => process(configuration, duration, &out),
         Command::Check { configuration } => check(configuration),
@@ -197,6 +202,7 @@ fn main() -> ExitCode {
         Command::Synchronise(args) => of_area(&args, synchronise::run),
         Command::Estimate(args) => of_area(&args, estimate::run),
         Command::Identify(args) => of_area(&args, identify::run),
+        Command::Output(args) => stage(&args, output::run),
     };
     outcome.unwrap_or_else(|error| failed(error.as_ref()))
 }
@@ -206,7 +212,8 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
     eprintln!("deckflex: {error}");
     let poisoned = error.downcast_ref::<TransportError>().is_some_and(TransportError::is_poisoned)
         || matches!(error.downcast_ref(), Some(replay::ReplayError::Transport(error)) if error.is_poisoned())
-        || matches!(error.downcast_ref(), Some(acquire::AcquireError::Transport(error)) if error.is_poisoned());
+        || matches!(error.downcast_ref(), Some(acquire::AcquireError::Transport(error)) if error.is_poisoned())
+        || matches!(error.downcast_ref(), Some(output::OutputError::Transport(error)) if error.is_poisoned());
     let unusable = error.is::<pipeline::configuration::ConfigurationError>()
         || error.is::<check::CheckError>()
         || matches!(error.downcast_ref(), Some(bound::BoundError::Configuration(_)))
@@ -214,6 +221,8 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
         || matches!(error.downcast_ref(), Some(replay::ReplayError::Recording(_)))
         || error.downcast_ref().is_some_and(acquire::AcquireError::is_lasting)
         || error.is::<simulate::EmulatorError>()
+        || matches!(error.downcast_ref(), Some(output::OutputError::Destination { .. }))
+        || matches!(error.downcast_ref(), Some(launch::LaunchError::Refused(_)))
         || error.is::<NoSuchArea>()
         || error.is::<Endless>();
     match (poisoned, unusable) {
@@ -237,13 +246,14 @@ fn launch(
     json: Option<PathBuf>,
     hlog: Option<PathBuf>,
     out: Option<PathBuf>,
+    prometheus: Option<PathBuf>,
 ) -> Outcome {
     let configuration = read(&path, duration)?;
     // before any process starts
     check_recordings(&path)?;
     let duration_s = duration.map(|d| d.as_secs_f64());
     let program = std::env::current_exe()?;
-    let options = launch::Options { program, configuration: path, duration_s, out, hlog };
+    let options = launch::Options { program, configuration: path, duration_s, out, hlog, prometheus };
     let report = launch::run(&configuration, &options)?;
     print!("{report}");
     if let Some(json) = json {

@@ -1,4 +1,4 @@
-use crate::{Header, message};
+use crate::{Alarms, Header, message};
 
 /// How a stage does: published when it is ready, once a second, and when it ends. Latched.
 #[repr(C)]
@@ -34,11 +34,11 @@ pub struct Health {
     pub scheduling: u32,
     /// The process.
     pub pid: u32,
-    /// Keeps the size a multiple of 8 without hidden bytes.
-    pub reserved: u32,
+    /// Limits of the area that have been crossed, as `estimate` sees them.
+    pub alarms: Alarms,
 }
 
-message!(Health, "deckflex/Health/1");
+message!(Health, "deckflex/Health/2");
 
 macro_rules! code {
     ($(#[$doc:meta])* $name:ident { $($(#[$vdoc:meta])* $variant:ident = $number:literal => $text:literal),* $(,)? }) => {
@@ -74,6 +74,8 @@ code! {
         Identify = 4 => "identify",
         /// Units on wires.
         Acquire = 5 => "acquire",
+        /// Telegrams on the ship's wires.
+        Output = 6 => "output",
     }
 }
 

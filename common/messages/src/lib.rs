@@ -4,24 +4,28 @@
 //! that ends in its version: whoever changes a field changes the number. Rotations are quaternions `[w, x, y, z]` and
 //! "A from B" as in the crate `frames`; covariances are row-major 3 by 3 in rad^2; times are nanoseconds.
 
+mod alarms;
 mod flags;
 mod header;
 mod health;
 mod imu;
 mod line_health;
 mod main_attitude;
+mod output;
 mod pair;
 mod parameters;
 mod solution;
 pub mod topic;
 mod truth;
 
+pub use alarms::Alarms;
 pub use flags::Flags;
 pub use header::{ClockDomain, Header, Stamps};
 pub use health::{Health, Scheduling, Stage, State};
 pub use imu::ImuSample;
 pub use line_health::LineHealth;
 pub use main_attitude::MainAttitude;
+pub use output::{OutputState, UtcSource};
 pub use pair::ImuPair;
 pub use parameters::FlexureParams;
 pub use solution::Solution;

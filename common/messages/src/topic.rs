@@ -10,12 +10,15 @@
 //! | `area/<name>/solution` | [`Solution`] | estimate | 2048 | 0 |
 //! | `area/<name>/parameters` | [`FlexureParams`] | identify | 16 | 1 |
 //! | `line/main`, `line/area/<name>` | [`LineHealth`] | acquire | 16 | 1 |
+//! | `output/<number>` | [`OutputState`] | output | 16 | 1 |
 //! | `health/<stage>[/<name>]` | [`Health`] | each stage | 16 | 1 |
 //!
 //! Depth is the number of messages a reader may fall behind before the oldest are dropped: 20 s at 100 Hz. History is what a
 //! reader that comes later still gets: 1 makes the topic latched.
 
-use crate::{FlexureParams, Health, ImuPair, ImuSample, LineHealth, MainAttitude, Message, Solution, Stage, Truth};
+use crate::{
+    FlexureParams, Health, ImuPair, ImuSample, LineHealth, MainAttitude, Message, OutputState, Solution, Stage, Truth,
+};
 use std::marker::PhantomData;
 
 /// A topic: a name and the quality of service that all its users share.
@@ -79,6 +82,11 @@ pub fn line(area: Option<&str>) -> Topic<LineHealth> {
         None => "line/main".into(),
     };
     topic(name, LATCHED)
+}
+
+/// What a destination of `output` has been sent; its number is the place in the configuration.
+pub fn output(number: usize) -> Topic<OutputState> {
+    topic(format!("output/{number}"), LATCHED)
 }
 
 /// The health of a stage; `area` is `None` for the sources, which serve all.

@@ -28,7 +28,8 @@ fn layouts_are_as_published() {
     layout!(Truth, "deckflex/Truth/1", 208, q @ 80, static_q @ 112, dynamic @ 144, ship @ 168, area @ 200);
     layout!(LineHealth, "deckflex/LineHealth/1", 232, arrival_ns @ 80, device_ns @ 88, skew @ 96, sigma @ 112, good @ 120,
         overflow @ 200, opened @ 216, unit @ 224, settled @ 228);
-    layout!(Health, "deckflex/Health/1", 176, taken @ 80, late @ 136, stage @ 152, pid @ 168);
+    layout!(Health, "deckflex/Health/2", 176, taken @ 80, late @ 136, stage @ 152, pid @ 168, alarms @ 172);
+    layout!(OutputState, "deckflex/OutputState/1", 192, sent @ 80, utc_offset_ns @ 120, delay_p50_ns @ 152, utc_source @ 176, open @ 188);
 }
 
 #[test]
@@ -39,8 +40,15 @@ fn flags_have_the_names_of_the_files() {
 
 #[test]
 fn codes_come_back() {
-    for stage in [Stage::Simulate, Stage::Replay, Stage::Synchronise, Stage::Estimate, Stage::Identify, Stage::Acquire]
-    {
+    for stage in [
+        Stage::Simulate,
+        Stage::Replay,
+        Stage::Synchronise,
+        Stage::Estimate,
+        Stage::Identify,
+        Stage::Acquire,
+        Stage::Output,
+    ] {
         assert_eq!(Stage::from_code(stage as u32), Some(stage));
     }
     assert_eq!(State::from_code(99), None);

@@ -1,5 +1,6 @@
 //! Configuration, data sources, the offline loop and what it writes.
 
+pub mod alarm;
 pub mod configuration;
 pub mod lane;
 pub mod offline;

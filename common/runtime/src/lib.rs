@@ -37,6 +37,7 @@ pub mod scheduling;
 mod service;
 mod signal;
 mod stage;
+mod utc;
 mod waiter;
 mod wire;
 
@@ -51,5 +52,6 @@ pub use node::Node;
 pub use port::{Anchor, Publisher, Subscriber};
 pub use signal::{Stop, die_with_parent};
 pub use stage::{Area, Beat, Connection};
+pub use utc::{HostUtc, host_utc};
 pub use waiter::{Waiter, Wake};
 pub use wire::Wire;

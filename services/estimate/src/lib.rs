@@ -1,6 +1,7 @@
 //! `deckflex estimate`: one solution a pair, valid or not.
 
 use messages::{Flags, FlexureParams, ImuPair, Solution, Stage, topic};
+use pipeline::alarm::AlarmWatch;
 use pipeline::configuration::Configuration;
 use pipeline::lane;
 use runtime::{Area, Context, Publisher, Sequence, Subscriber, TransportError, Waiter, monotonic_ns};
@@ -23,6 +24,8 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
     let solutions = Publisher::open(node, &topic::solution(name))?;
     let mut estimator = lane::estimator(configuration, area);
     let mut sequence = Sequence::default();
+    let mut alarms = AlarmWatch::new(configuration.areas[area].alarm.as_ref());
+    let mut valid_ns = monotonic_ns();
     let beat = &mut connection.beat;
     beat.ready()?;
     let mut waiter = Waiter::new();
@@ -45,7 +48,13 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
             beat.health.lost = sequence.lost();
             beat.health.late += u64::from(solution.flags.contains(Flags::LATE));
             beat.handled(&pair.header);
+            alarms.see(&solution);
+            if solution.is_valid() {
+                valid_ns = solution.header.stamps.solution_ns;
+            }
         }
+        alarms.without(monotonic_ns() - valid_ns);
+        beat.health.alarms = alarms.raised();
         beat.tick(monotonic_ns())?;
     }
     Ok(())

@@ -1,12 +1,14 @@
 //! What the launcher hears of its set: solutions, parameters, truth and health; latencies and files come of it.
 
 use crate::lines::Lines;
+use crate::outputs::{OutputRecord, OutputRow};
 use crate::recorded::Recorded;
 use crate::report::{AreaRow, Percentiles, Report, StageRow};
 use crate::set::Role;
 use crate::{LaunchError, Options};
 use messages::{
-    Flags, FlexureParams, Health, ImuPair, ImuSample, MainAttitude, Scheduling, Solution, Stage, State, Truth, topic,
+    Flags, FlexureParams, Health, ImuPair, ImuSample, MainAttitude, OutputState, Scheduling, Solution, Stage, State,
+    Truth, topic,
 };
 use pipeline::configuration::{Configuration, Source};
 use pipeline::solution_file::SolutionFile;
@@ -21,8 +23,12 @@ use std::path::PathBuf;
 pub struct Ports {
     areas: Vec<AreaPorts>,
     health: Vec<(Role, Subscriber<Health>)>,
+    outputs: Vec<Subscriber<OutputState>>,
     _anchors: Anchors,
 }
+
+/// The stage that serves all areas at the other end.
+const OUTPUT: Role = Role { stage: Stage::Output, area: None };
 
 /// Holds the topics that the launcher does not read: a stage killed while it makes a topic then leaves nothing half made.
 struct Anchors {
@@ -60,6 +66,7 @@ impl Ports {
 pub struct Collector {
     areas: Vec<AreaRecord>,
     health: HashMap<Role, Counted>,
+    outputs: Vec<OutputRecord>,
     source: Role,
     source_latency: Recorded,
     lines: Lines,
@@ -121,6 +128,7 @@ impl Collector {
         Ok(Self {
             areas,
             health: HashMap::new(),
+            outputs: OutputRecord::all(configuration),
             source: Role { stage, area: None },
             source_latency: Recorded::new(hlog, stage.name())?,
             lines: Lines::new(configuration),
@@ -135,7 +143,7 @@ impl Collector {
             counted.retire();
         }
         let _anchors = Anchors::open(node, configuration)?;
-        let mut ports = Ports { areas: Vec::new(), health: Vec::new(), _anchors };
+        let mut ports = Ports { areas: Vec::new(), health: Vec::new(), outputs: Vec::new(), _anchors };
         for (index, area) in configuration.areas.iter().enumerate() {
             let name = area.name.as_str();
             ports.areas.push(AreaPorts {
@@ -148,9 +156,14 @@ impl Collector {
                 ports.health.push((Role { stage, area: Some(index) }, health));
             }
         }
-        let health = Subscriber::open(node, &topic::health(self.source.stage, None))?;
-        ports.health.push((self.source, health));
         self.lines.connect(node)?;
+        for number in 0..self.outputs.len() {
+            ports.outputs.push(Subscriber::open(node, &topic::output(number))?);
+        }
+        let output = (!self.outputs.is_empty()).then_some(OUTPUT);
+        for role in output.into_iter().chain([self.source]) {
+            ports.health.push((role, Subscriber::open(node, &topic::health(role.stage, None))?));
+        }
         Ok(ports)
     }
 
@@ -160,6 +173,11 @@ impl Collector {
         for (role, port) in &ports.health {
             while let Some(health) = port.take()? {
                 self.health.entry(*role).or_default().update(health);
+            }
+        }
+        for (record, port) in self.outputs.iter_mut().zip(&ports.outputs) {
+            while let Some(state) = port.take()? {
+                record.update(state);
             }
         }
         for (index, (record, ports)) in self.areas.iter_mut().zip(&ports.areas).enumerate() {
@@ -218,6 +236,21 @@ impl Collector {
         self.lines.quiet(now_ns)
     }
 
+    /// The last word of each stage.
+    pub fn healths(&self) -> impl Iterator<Item = (&Role, &Health)> {
+        self.health.iter().filter(|(_, counted)| counted.seen).map(|(role, counted)| (role, &counted.now))
+    }
+
+    /// The name of an area.
+    pub fn area_name(&self, area: usize) -> &str {
+        &self.areas[area].name
+    }
+
+    /// What became of the telegrams of each destination so far.
+    pub fn outputs(&self) -> impl Iterator<Item = OutputRow> {
+        self.outputs.iter().map(OutputRecord::row)
+    }
+
     /// Median end-to-end latency of the first area so far, microseconds.
     pub fn median_us(&self) -> f64 {
         self.areas[0].end_to_end.whole.summary().p50_us
@@ -233,6 +266,9 @@ impl Collector {
             stages.push(self.row(role(Stage::Synchronise), restarts, name, &area.synchronise.whole, wait_us));
             stages.push(self.row(role(Stage::Estimate), restarts, name, &area.estimate.whole, 0.0));
             stages.push(self.row(role(Stage::Identify), restarts, name, &area.identify.whole, 0.0));
+        }
+        if !self.outputs.is_empty() {
+            stages.push(self.row(OUTPUT, restarts, "", &Latency::new(), 0.0));
         }
         let scheduling = if self.all_fifo() { Scheduling::Fifo } else { Scheduling::Normal };
         let end_to_end: Vec<AreaRow> = self.areas.iter().map(AreaRecord::row).collect();
@@ -260,6 +296,7 @@ impl Collector {
             stages,
             end_to_end,
             lines: self.lines.rows(),
+            outputs: self.outputs.iter().map(OutputRecord::row).collect(),
         })
     }
 

@@ -4,6 +4,8 @@ mod collector;
 mod error;
 mod line_row;
 mod lines;
+mod outputs;
+mod prometheus;
 mod recorded;
 mod report;
 mod set;
@@ -11,10 +13,12 @@ mod status;
 
 pub use error::LaunchError;
 pub use line_row::LineRow;
+pub use outputs::OutputRow;
 pub use report::{AreaRow, Percentiles, Report, StageRow};
 
 use collector::Collector;
 use pipeline::configuration::{Configuration, SchedulingChoice};
+use prometheus::Textfile;
 use runtime::scheduling::Request;
 use runtime::{Context, Domain, Node, Stop, Waiter, monotonic_ns};
 use set::{Outcome, Set};
@@ -35,6 +39,8 @@ pub struct Options {
     pub out: Option<PathBuf>,
     /// Folder for the latency logs.
     pub hlog: Option<PathBuf>,
+    /// Text file of the stages' health, for the node exporter of Prometheus.
+    pub prometheus: Option<PathBuf>,
 }
 
 /// The set is looked after at least so often.
@@ -57,6 +63,7 @@ pub fn run(configuration: &Configuration, options: &Options) -> Result<Report, L
     Domain::sweep()?;
     let run_id = monotonic_ns() as u64;
     let mut collector = Collector::new(configuration, options)?;
+    let mut textfile = Textfile::create(options.prometheus.clone())?;
     let mut epoch_ns = None;
     let mut restarts = Vec::new();
     for _ in 0..DOMAINS {
@@ -69,7 +76,7 @@ pub fn run(configuration: &Configuration, options: &Options) -> Result<Report, L
             scheduling: request(configuration.run.scheduling),
         };
         let mut set = Set::new(configuration, options, context, std::mem::take(&mut restarts));
-        let ended = attend(configuration, &stop, &domain, &mut set, &mut collector, &mut epoch_ns);
+        let ended = attend(configuration, &stop, &domain, &mut set, &mut collector, &mut textfile, &mut epoch_ns);
         set.kill();
         restarts = set.restarts();
         domain.remove()?;
@@ -78,7 +85,10 @@ pub fn run(configuration: &Configuration, options: &Options) -> Result<Report, L
             return Err(LaunchError::Leftovers(left));
         }
         match ended {
-            Ok(()) => return collector.finish(configuration, &restarts),
+            Ok(()) => {
+                textfile.end()?;
+                return collector.finish(configuration, &restarts);
+            }
             Err(error) if error.is_poisoned() => continue,
             Err(error) => return Err(error),
         }
@@ -102,6 +112,7 @@ fn attend(
     domain: &Domain,
     set: &mut Set,
     collector: &mut Collector,
+    textfile: &mut Textfile,
     epoch_ns: &mut Option<i64>,
 ) -> Result<(), LaunchError> {
     let node = Node::open(domain, "launch")?;
@@ -146,5 +157,6 @@ fn attend(
             return Ok(());
         }
         status.show(now_ns, collector, set);
+        textfile.show(now_ns, collector, set);
     }
 }

@@ -1,5 +1,6 @@
 //! The table at the end of a launch, and the same as JSON.
 
+use crate::OutputRow;
 use crate::line_row::LineRow;
 use runtime::{Latency, Summary};
 use serde::Serialize;
@@ -30,6 +31,8 @@ pub struct Report {
     pub end_to_end: Vec<AreaRow>,
     /// One row a unit on a wire.
     pub lines: Vec<LineRow>,
+    /// One row a destination of telegrams.
+    pub outputs: Vec<OutputRow>,
 }
 
 /// A latency in figures, microseconds.
@@ -142,6 +145,7 @@ impl fmt::Display for Report {
                 row.area, row.parameters, row.late_parameters
             )?;
         }
+        self.outputs.iter().try_for_each(|row| writeln!(f, "{row}"))?;
         writeln!(
             f,
             "scheduling obtained: {}; samples missing in the units' own streams: {}, refused: {}",

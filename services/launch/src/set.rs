@@ -70,6 +70,9 @@ impl Set {
             source: Role { stage, area: None },
         };
         let mut roles = Vec::new();
+        if !configuration.outputs.is_empty() {
+            roles.push(Role { stage: Stage::Output, area: None });
+        }
         for area in 0..configuration.areas.len() {
             // readers before writers
             roles.extend(
@@ -95,7 +98,7 @@ impl Set {
 
     /// The stages that have to be ready before the source may start.
     pub fn workers(&self) -> impl Iterator<Item = Role> {
-        self.members.iter().map(|member| member.role).filter(|role| role.area.is_some())
+        self.members.iter().map(|member| member.role).filter(|role| *role != self.source)
     }
 
     /// Starts all but the source.

@@ -3,7 +3,7 @@
 use super::estimator::EstimatorSettings;
 use super::identifier::{IdentifierSettings, identifier};
 use super::instrument::{Accel, Gyro, Source, mounting, source};
-use super::{AreaSimulation, quantity, table};
+use super::{AlarmLimits, AreaSimulation, quantity, table};
 use frames::{Case, Main, Rot, Sub, Vec3, unit};
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
@@ -57,6 +57,9 @@ pub struct Area {
     /// The slow stage.
     #[serde(default, deserialize_with = "identifier")]
     pub identifier: IdentifierSettings,
+    /// What is worth an alarm.
+    #[serde(default, deserialize_with = "table::optional")]
+    pub alarm: Option<AlarmLimits>,
     /// What the simulator makes of the area.
     #[serde(default, deserialize_with = "table::one")]
     pub simulation: AreaSimulation,

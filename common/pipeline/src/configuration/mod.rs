@@ -1,5 +1,6 @@
 //! The configuration: one TOML file whose keys carry their unit; SI units from here on.
 
+mod alarm;
 mod area;
 mod area_simulation;
 mod document;
@@ -11,6 +12,7 @@ mod identifier;
 mod instrument;
 mod line;
 mod model_free;
+mod output;
 mod quantity;
 mod rules;
 mod scenario;
@@ -20,6 +22,7 @@ mod swing;
 mod table;
 mod unit_errors;
 
+pub use alarm::AlarmLimits;
 pub use area::{Area, Installation, MainUnit};
 pub use area_simulation::AreaSimulation;
 pub use error::ConfigurationError;
@@ -28,6 +31,7 @@ pub use identifier::{IdentifierMethod, IdentifierSettings};
 pub use instrument::{Accel, Gyro, Source};
 pub use line::Line;
 pub use model_free::{DelaySettings, NetworkInput, NetworkSettings};
+pub use output::{Destination, Output, Telegrams};
 pub use simulation::{Ins, Simulation, Wire};
 pub use wire::Port;
 
@@ -60,6 +64,9 @@ pub struct Configuration {
     /// The deck areas, at least one.
     #[serde(rename = "area", default, deserialize_with = "table::many")]
     pub areas: Vec<Area>,
+    /// Where telegrams go.
+    #[serde(rename = "output", default, deserialize_with = "table::many")]
+    pub outputs: Vec<Output>,
     /// How the run is carried out.
     #[serde(default, deserialize_with = "table::one")]
     pub run: Run,

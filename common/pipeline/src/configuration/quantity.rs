@@ -127,6 +127,12 @@ quantities! {
     registration_s: 1.0, 0.1, 86_400.0;
     filter_hz: 1.0, 0.1, 1000.0;
     pace: 1.0, 1e-3, 1e4;
+    output_hz: 1.0, 0.1, 200.0;
+    extrapolate_ms: 1e-3, 0.0, 50.0;
+    silence_ms: 1e-3, 20.0, 60_000.0;
+    limit_arcmin: unit::ARCMIN, 0.0, 10_800.0;
+    invalid_s: 1.0, 0.1, 86_400.0;
+    hold_s: 1.0, 0.0, 3600.0;
 
     arw_deg_per_sqrt_h: unit::DEG_PER_SQRT_H, 0.0, 1000.0;
     bias_deg_per_h: unit::DEG_PER_H, 0.0, 1e5;

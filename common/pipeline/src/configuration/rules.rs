@@ -1,7 +1,7 @@
 //! Rules that more than one key takes part in.
 
 use super::document::Document;
-use super::{Area, Configuration, ConfigurationError, Port, RangeMethod, RegistrationMethod, Source};
+use super::{Area, Configuration, ConfigurationError, Port, RangeMethod, RegistrationMethod, Source, output};
 use std::path::Path;
 
 /// Makes the paths of the recordings absolute and checks the whole; all faults are reported.
@@ -17,6 +17,7 @@ pub(super) fn apply(configuration: &mut Configuration, document: &Document) -> R
     names(&configuration.areas, document, &mut faults);
     times(configuration, document, &mut faults);
     methods(&configuration.areas, document, &mut faults);
+    output::rules(configuration, document, &mut faults);
     match faults.len() {
         0 => Ok(()),
         1 => Err(faults.remove(0)),

@@ -3,6 +3,7 @@
 mod events;
 mod lines;
 mod messages;
+mod output;
 mod papers;
 mod rules;
 mod text;

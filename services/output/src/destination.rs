@@ -1,0 +1,186 @@
+use crate::OutputError;
+use crate::line::Line;
+use frames::unit::nanoseconds;
+use messages::{Header, OutputState, Solution, UtcSource};
+use pipeline::configuration::{Configuration, Output, Telegrams};
+use runtime::{HostUtc, Latency, host_utc, monotonic_ns};
+use telegrams::{Cadence, Report, Track, UtcMap, encode_kmb, instant_ns};
+
+/// The least difference that shows in a sentence.
+const MILLISECOND_NS: i64 = 1_000_000;
+
+/// UTC as the host has it.
+pub struct Clock {
+    map: UtcMap,
+    host: HostUtc,
+}
+
+impl Clock {
+    pub fn new() -> Self {
+        let mut clock = Self { map: UtcMap::default(), host: host_utc() };
+        clock.read();
+        clock
+    }
+
+    pub fn read(&mut self) {
+        self.host = host_utc();
+        self.map.measure(monotonic_ns(), self.host.offset_ns);
+    }
+
+    fn utc_ns(&self, instant_ns: i64) -> i64 {
+        self.map.utc_ns(instant_ns).unwrap_or(instant_ns + self.host.offset_ns)
+    }
+}
+
+/// One destination: what has gone there and what is due.
+pub struct Destination {
+    output: Output,
+    area: usize,
+    lead_ns: i64,
+    silence_ns: i64,
+    period_ns: i64,
+    cadence: Cadence,
+    line: Line,
+    state: OutputState,
+    delays: Latency,
+    text: String,
+    last_utc_ns: i64,
+    /// When the next word about silence is due, on the monotonic clock.
+    due_ns: i64,
+}
+
+impl Destination {
+    /// Opens a destination of the configuration. With `resume` a line that cannot be opened now is opened later.
+    pub fn open(configuration: &Configuration, number: usize, run_id: u64, resume: bool) -> Result<Self, OutputError> {
+        let output = configuration.outputs[number].clone();
+        let mut line = Line::new(output.to.clone());
+        match line.open() {
+            Err(reason) if !resume => {
+                return Err(OutputError::Destination { number, to: output.to.to_string(), reason });
+            }
+            _ => {}
+        }
+        let area = configuration.areas.iter().position(|area| area.name == output.area).unwrap_or(0);
+        let rate_hz = output.rate_hz.min(configuration.rate_hz);
+        Ok(Self {
+            area,
+            lead_ns: nanoseconds(output.extrapolate_s),
+            silence_ns: nanoseconds(output.silence_s),
+            period_ns: nanoseconds(1.0 / rate_hz),
+            cadence: Cadence::new(rate_hz, configuration.rate_hz),
+            line,
+            state: OutputState {
+                header: Header { run_id, ..Header::default() },
+                output: number as u32,
+                area: area as u32,
+                ..OutputState::default()
+            },
+            delays: Latency::new(),
+            text: String::with_capacity(output.longest()),
+            last_utc_ns: i64::MIN,
+            due_ns: monotonic_ns() + nanoseconds(output.silence_s),
+            output,
+        })
+    }
+
+    /// Index of its area.
+    pub fn area(&self) -> usize {
+        self.area
+    }
+
+    pub fn counts(&self) -> &OutputState {
+        &self.state
+    }
+
+    /// Tells a solution, if its turn has come and it is young enough.
+    pub fn tell(&mut self, solution: &Solution, track: &Track, clock: &Clock) {
+        if !self.cadence.takes(solution.header.time_ns) {
+            return;
+        }
+        if monotonic_ns() - instant_ns(&solution.header) > self.silence_ns {
+            self.state.withheld += 1;
+            return;
+        }
+        let moment = track.moment(solution, self.lead_ns);
+        if self.send(&moment.report(clock.utc_ns(moment.instant_ns))) {
+            self.state.extrapolated += u64::from(moment.extrapolated);
+            self.state.header.sequence = solution.header.sequence;
+            self.state.header.time_ns = solution.header.time_ns;
+            self.state.header.clock_domain = solution.header.clock_domain;
+            self.delays.record(monotonic_ns() - solution.header.stamps.solution_ns);
+        }
+    }
+
+    /// Says at the destination's rate that nothing is valid, when the newest solution is too old; sends what a slow line has left.
+    pub fn attend(&mut self, newest_ns: i64, now_ns: i64, clock: &Clock) {
+        self.line.attend(now_ns);
+        if now_ns - newest_ns <= self.silence_ns {
+            self.due_ns = newest_ns + self.silence_ns;
+        } else if now_ns >= self.due_ns {
+            self.send(&invalid(now_ns, clock));
+            // after a pause of the process there is nothing to catch up with
+            self.due_ns = (self.due_ns + self.period_ns).max(now_ns);
+        }
+    }
+
+    /// The last word, later than even an attitude that was carried forward.
+    pub fn end(&mut self, now_ns: i64, clock: &Clock) {
+        let mut report = invalid(now_ns, clock);
+        report.utc_ns = report.utc_ns.max(self.last_utc_ns.saturating_add(MILLISECOND_NS));
+        self.send(&report);
+        self.line.attend(now_ns);
+    }
+
+    /// When the next word about silence is due unless a solution comes, on the monotonic clock.
+    pub fn due_ns(&self) -> i64 {
+        self.due_ns
+    }
+
+    /// Sends a report, unless its instant is not later than that of the one before.
+    fn send(&mut self, report: &Report) -> bool {
+        if report.utc_ns <= self.last_utc_ns {
+            self.state.withheld += 1;
+            return false;
+        }
+        self.last_utc_ns = report.utc_ns;
+        let sent = match &self.output.telegrams {
+            Telegrams::Kmb => self.line.send(&encode_kmb(report)),
+            Telegrams::Sentences(sentences) => {
+                self.text.clear();
+                let style = self.output.style();
+                sentences.iter().for_each(|sentence| sentence.write(report, &style, &mut self.text));
+                self.line.send(self.text.as_bytes())
+            }
+        };
+        if sent {
+            self.state.sent += 1;
+            self.state.invalid += u64::from(report.attitude.is_none());
+        } else {
+            self.state.unsendable += 1;
+        }
+        sent
+    }
+
+    /// The state to be published.
+    pub fn state(&self, clock: &Clock, now_ns: i64) -> OutputState {
+        let delays = self.delays.summary();
+        let ns = |us: f64| (us * 1e3) as i64;
+        let source = if clock.host.error_ns.is_some() { UtcSource::Host } else { UtcSource::HostFree };
+        OutputState {
+            utc_offset_ns: clock.utc_ns(now_ns) - now_ns,
+            utc_age_ns: clock.map.age_ns(now_ns),
+            utc_error_ns: clock.host.error_ns.unwrap_or(-1),
+            utc_ahead_ns: clock.map.ahead_ns(now_ns),
+            delay_p50_ns: ns(delays.p50_us),
+            delay_p99_ns: ns(delays.p99_us),
+            delay_max_ns: ns(delays.max_us),
+            utc_source: source as u32,
+            open: u32::from(self.line.is_open()),
+            ..self.state
+        }
+    }
+}
+
+fn invalid(now_ns: i64, clock: &Clock) -> Report {
+    Report { utc_ns: clock.utc_ns(now_ns), ..Report::default() }
+}
