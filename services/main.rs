@@ -4,6 +4,7 @@ use clap::{Args, Parser, Subcommand};
 use pipeline::configuration::Configuration;
 use runtime::{Context, POISONED_EXIT_CODE, TransportError};
 use std::error::Error;
+use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -34,9 +35,13 @@ enum Command {
         /// Write the solutions, the same files as `process`
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        /// Record everything there, whatever folder [record] names
+        #[arg(long, value_name = "DIR")]
+        record: Option<PathBuf>,
     },
     /// Run the same steps in one thread without transport, as fast as it goes
     Process {
+        /// Or a recorded run, to go through it again as it was
         configuration: PathBuf,
         /// Length of the data, such as 60s or 10min
         #[arg(long, value_parser = humantime::parse_duration)]
@@ -83,6 +88,19 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
+    /// Complete a recording that was cut, and say what it holds
+    Recover {
+        recording: PathBuf,
+        /// The new file; without it beside the recording, with the ending .recovered.mcap
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
+    /// Write a recorded run as CSV files
+    Export {
+        recording: PathBuf,
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
     /// Stage: simulated units (started by launch)
     Simulate(StageArgs),
     /// Stage: recorded units (started by launch)
@@ -93,6 +111,17 @@ enum Command {
     Estimate(AreaArgs),
     /// Stage: one area's flexure parameters (started by launch)
     Identify(AreaArgs),
+    /// Stage: the recorder (started by launch)
+    Record(RecordArgs),
+}
+
+#[derive(Args)]
+struct RecordArgs {
+    #[command(flatten)]
+    stage: StageArgs,
+    /// Where to record, whatever folder [record] names
+    #[arg(long, value_name = "DIR")]
+    folder: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -129,8 +158,8 @@ type Outcome = Result<ExitCode, Box<dyn Error>>;
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
-        Command::Launch { configuration, duration, json, hlog, out } => {
-            launch(configuration, duration, json, hlog, out)
+        Command::Launch { configuration, duration, json, hlog, out, record } => {
+            launch(configuration, duration, json, hlog, out, record)
         }
         Command::Process { configuration, duration, out } => process(configuration, duration, &out),
         Command::Check { configuration } => check(configuration),
@@ -142,11 +171,14 @@ fn main() -> ExitCode {
             let plan = reproduce::Plan { trials, seed, quick };
             reproduce(&reproduce::Options { selection, plan, json, report, threads })
         }
+        Command::Recover { recording, out } => recover(&recording, out.as_deref()),
+        Command::Export { recording, out } => export(&recording, &out),
         Command::Simulate(args) => stage(&args, simulate::run),
         Command::Replay(args) => stage(&args, replay::run),
         Command::Synchronise(args) => of_area(&args, synchronise::run),
         Command::Estimate(args) => of_area(&args, estimate::run),
         Command::Identify(args) => of_area(&args, identify::run),
+        Command::Record(args) => record(&args),
     };
     outcome.unwrap_or_else(|error| failed(error.as_ref()))
 }
@@ -155,12 +187,17 @@ fn main() -> ExitCode {
 fn failed(error: &(dyn Error + 'static)) -> ExitCode {
     eprintln!("deckflex: {error}");
     let poisoned = error.downcast_ref::<TransportError>().is_some_and(TransportError::is_poisoned)
-        || matches!(error.downcast_ref(), Some(replay::ReplayError::Transport(error)) if error.is_poisoned());
+        || matches!(error.downcast_ref(), Some(replay::ReplayError::Transport(error)) if error.is_poisoned())
+        || matches!(error.downcast_ref(), Some(record::RecordError::Transport(error)) if error.is_poisoned());
     let unusable = error.is::<pipeline::configuration::ConfigurationError>()
         || error.is::<check::CheckError>()
         || matches!(error.downcast_ref(), Some(bound::BoundError::Configuration(_)))
         || matches!(error.downcast_ref(), Some(process::ProcessError::Recording(_)))
         || matches!(error.downcast_ref(), Some(replay::ReplayError::Recording(_)))
+        || matches!(error.downcast_ref(), Some(record::RecordError::Configuration(_) | record::RecordError::Nowhere))
+        || error.is::<recover::RecoverError>()
+        || error.is::<export::ExportError>()
+        || error.is::<NoFolder>()
         || error.is::<NoSuchArea>()
         || error.is::<Endless>();
     match (poisoned, unusable) {
@@ -184,13 +221,18 @@ fn launch(
     json: Option<PathBuf>,
     hlog: Option<PathBuf>,
     out: Option<PathBuf>,
+    record: Option<PathBuf>,
 ) -> Outcome {
-    let configuration = read(&path, duration)?;
+    let mut configuration = read(&path, duration)?;
+    record.iter().for_each(|folder| configuration.record_in(folder));
     // before any process starts
     check_recordings(&path)?;
+    if let Some(record) = &configuration.record {
+        std::fs::create_dir_all(&record.folder).map_err(|reason| NoFolder(record.folder.clone(), reason))?;
+    }
     let duration_s = duration.map(|d| d.as_secs_f64());
     let program = std::env::current_exe()?;
-    let options = launch::Options { program, configuration: path, duration_s, out, hlog };
+    let options = launch::Options { program, configuration: path, duration_s, out, record, hlog };
     let report = launch::run(&configuration, &options)?;
     print!("{report}");
     if let Some(json) = json {
@@ -233,6 +275,27 @@ fn reproduce(options: &reproduce::Options) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
+fn recover(recording: &std::path::Path, out: Option<&std::path::Path>) -> Outcome {
+    println!("{}", recover::run(recording, out)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn export(recording: &std::path::Path, out: &std::path::Path) -> Outcome {
+    print!("{}", export::run(recording, out)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn record(args: &RecordArgs) -> Outcome {
+    stage(&args.stage, |configuration, context| {
+        let mut configuration = configuration.clone();
+        args.folder.iter().for_each(|folder| configuration.record_in(folder));
+        record::run(&configuration, context, |line| {
+            // a log on the disk that is full must not end the recorder
+            let _ = writeln!(std::io::stderr(), "deckflex record: {line}");
+        })
+    })
+}
+
 fn stage<E: Into<Box<dyn Error>>>(
     args: &StageArgs,
     run: impl Fn(&Configuration, &Context) -> Result<(), E>,
@@ -270,6 +333,17 @@ impl std::fmt::Display for NoSuchArea {
 }
 
 impl Error for NoSuchArea {}
+
+#[derive(Debug)]
+struct NoFolder(PathBuf, std::io::Error);
+
+impl std::fmt::Display for NoFolder {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "cannot record in {}: {}", self.0.display(), self.1)
+    }
+}
+
+impl Error for NoFolder {}
 
 #[derive(Debug)]
 struct Endless;

@@ -115,7 +115,10 @@ fn what_must_not_meet_does_not_meet() {
         ("deckflex-estimation", &[&shell[..], &["deckflex-simulation", "getrandom"]].concat()),
         ("deckflex-simulation", &[&shell[..], &["deckflex-estimation"]].concat()),
         ("deckflex-pipeline", &["iceoryx2", "clap", "signal-hook", "crossbeam", "deckflex-runtime"]),
-        ("deckflex-recording", &["iceoryx2", "clap", "signal-hook", "crossbeam", "deckflex-runtime", "deckflex-pipeline"]),
+        (
+            "deckflex-recording",
+            &["iceoryx2", "clap", "signal-hook", "crossbeam", "deckflex-runtime", "deckflex-pipeline"],
+        ),
         ("deckflex-runtime", &["clap", "deckflex-pipeline", "deckflex-estimation", "deckflex-simulation"]),
         ("deckflex-experiments", &["iceoryx2", "clap", "signal-hook", "deckflex-runtime", "plotters", "maud"]),
     ];

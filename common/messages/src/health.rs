@@ -72,6 +72,8 @@ code! {
         Estimate = 3 => "estimate",
         /// The slow identifier.
         Identify = 4 => "identify",
+        /// The recorder.
+        Record = 7 => "record",
     }
 }
 

@@ -37,7 +37,7 @@ fn flags_have_the_names_of_the_files() {
 
 #[test]
 fn codes_come_back() {
-    for stage in [Stage::Simulate, Stage::Replay, Stage::Synchronise, Stage::Estimate, Stage::Identify] {
+    for stage in [Stage::Simulate, Stage::Replay, Stage::Synchronise, Stage::Estimate, Stage::Identify, Stage::Record] {
         assert_eq!(Stage::from_code(stage as u32), Some(stage));
     }
     assert_eq!(State::from_code(99), None);

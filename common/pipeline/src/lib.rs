@@ -3,6 +3,7 @@
 pub mod configuration;
 pub mod lane;
 pub mod offline;
+pub mod recorded_run;
 pub mod recording;
 pub mod solution_file;
 pub mod source;

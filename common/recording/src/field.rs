@@ -19,6 +19,12 @@ pub(crate) trait Field {
     fn write(&self, number: u32, out: &mut Vec<u8>);
     /// Takes what was written.
     fn read(&mut self, wire: WireType, input: &mut &[u8]) -> Result<(), DecodeError>;
+    /// The names of the columns that it takes in a table.
+    fn columns(name: &str) -> Vec<String> {
+        vec![name.to_owned()]
+    }
+    /// Its values in these columns, as short as they can be read back exactly.
+    fn values(&self, out: &mut Vec<String>);
 }
 
 macro_rules! scalar {
@@ -30,6 +36,9 @@ macro_rules! scalar {
             }
             fn read(&mut self, wire: WireType, input: &mut &[u8]) -> Result<(), DecodeError> {
                 encoding::$module::merge(wire, self, input, DecodeContext::default())
+            }
+            fn values(&self, out: &mut Vec<String>) {
+                out.push(self.to_string());
             }
         }
     )*};
@@ -54,6 +63,20 @@ impl<const N: usize> Field for [f64; N] {
         self.iter_mut().for_each(|x| *x = body.get_f64_le());
         Ok(())
     }
+
+    fn columns(name: &str) -> Vec<String> {
+        let axes: &[&str] = match N {
+            3 => &["x", "y", "z"],
+            4 => &["w", "x", "y", "z"],
+            _ => &[],
+        };
+        let label = |i: usize| axes.get(i).map_or(i.to_string(), |axis| (*axis).to_owned());
+        (0..N).map(|i| format!("{name}_{}", label(i))).collect()
+    }
+
+    fn values(&self, out: &mut Vec<String>) {
+        out.extend(self.iter().map(f64::to_string));
+    }
 }
 
 impl Field for Flags {
@@ -68,6 +91,10 @@ impl Field for Flags {
         bits.read(wire, input)?;
         *self = Self::from_bits_retain(bits);
         Ok(())
+    }
+
+    fn values(&self, out: &mut Vec<String>) {
+        out.push(self.names());
     }
 }
 
@@ -86,6 +113,12 @@ macro_rules! nested {
             fn read(&mut self, wire: WireType, input: &mut &[u8]) -> Result<(), DecodeError> {
                 encoding::wire_type::check_wire_type(WireType::LengthDelimited, wire)?;
                 merge_all(self, delimited(input)?)
+            }
+            fn columns(_: &str) -> Vec<String> {
+                <$type as Structure>::columns()
+            }
+            fn values(&self, out: &mut Vec<String>) {
+                Structure::values(self, out);
             }
         }
     )*};

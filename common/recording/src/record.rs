@@ -56,6 +56,18 @@ macro_rules! records {
                 out
             }
 
+            /// The names of its columns in a table, with the units of the message's fields.
+            pub fn columns(&self) -> Vec<String> {
+                match self { $(Self::$variant(_) => <$type as Structure>::columns()),* }
+            }
+
+            /// Its values in these columns, as short as they can be read back exactly.
+            pub fn values(&self) -> Vec<String> {
+                let mut values = Vec::new();
+                match self { $(Self::$variant(message) => Structure::values(message, &mut values)),* }
+                values
+            }
+
             /// The message of these bytes; `None` if the schema is not one of ours.
             ///
             /// # Errors

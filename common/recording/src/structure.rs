@@ -18,6 +18,10 @@ pub(crate) trait Structure {
     fn fields() -> Vec<FieldDescriptorProto>;
     /// Writes all fields.
     fn encode(&self, out: &mut Vec<u8>);
+    /// The names of its columns in a table.
+    fn columns() -> Vec<String>;
+    /// Its values in these columns.
+    fn values(&self, out: &mut Vec<String>);
     /// Takes one field; `false` if the number is not known.
     fn merge(&mut self, number: u32, wire: WireType, input: &mut &[u8]) -> Result<bool, DecodeError>;
 }
@@ -35,6 +39,13 @@ macro_rules! structure {
                 // a field that the struct gets and this table does not is an error here
                 let Self { $($field,)* $($($left: _),*)? } = self;
                 $($crate::field::Field::write($field, $number, out);)*
+            }
+            fn columns() -> Vec<String> {
+                let of = Self::default();
+                [$($crate::structure::columns(stringify!($field), &of.$field)),*].concat()
+            }
+            fn values(&self, out: &mut Vec<String>) {
+                $($crate::field::Field::values(&self.$field, out);)*
             }
             fn merge(
                 &mut self,
@@ -62,6 +73,10 @@ pub(crate) fn describe<F: Field>(name: &str, number: i32, _: &F) -> FieldDescrip
         type_name: F::STRUCTURE.map(|name| format!(".{PACKAGE}.{name}")),
         ..FieldDescriptorProto::default()
     }
+}
+
+pub(crate) fn columns<F: Field>(name: &str, _: &F) -> Vec<String> {
+    F::columns(name)
 }
 
 /// Takes all fields of a message; unknown ones, of a later version, are passed over.

@@ -2,7 +2,7 @@
 
 use crate::recorded::Recorded;
 use crate::report::{AreaRow, Percentiles, Report, StageRow};
-use crate::set::Role;
+use crate::set::{RECORD, Role};
 use crate::{LaunchError, Options};
 use messages::{
     Flags, FlexureParams, Health, ImuPair, ImuSample, MainAttitude, Scheduling, Solution, Stage, State, Truth, topic,
@@ -97,6 +97,7 @@ struct Totals {
     taken: u64,
     given: u64,
     lost: u64,
+    overflow: u64,
 }
 
 impl Collector {
@@ -107,7 +108,7 @@ impl Collector {
         }
         let stage = match configuration.main.source {
             Source::Simulator => Stage::Simulate,
-            Source::Csv(_) => Stage::Replay,
+            Source::Csv(_) | Source::Mcap(_) => Stage::Replay,
         };
         let hlog = options.hlog.as_deref();
         let areas = configuration
@@ -146,6 +147,9 @@ impl Collector {
         }
         let health = Subscriber::open(node, &topic::health(self.source.stage, None))?;
         ports.health.push((self.source, health));
+        if configuration.record.is_some() {
+            ports.health.push((RECORD, Subscriber::open(node, &topic::health(RECORD.stage, None))?));
+        }
         Ok(ports)
     }
 
@@ -183,7 +187,8 @@ impl Collector {
 
     /// Whether every fast stage that has spoken runs in the real-time class.
     pub fn all_fifo(&self) -> bool {
-        let mut fast = self.health.iter().filter(|(role, counted)| role.stage != Stage::Identify && counted.seen);
+        let slow = [Stage::Identify, Stage::Record];
+        let mut fast = self.health.iter().filter(|(role, counted)| !slow.contains(&role.stage) && counted.seen);
         fast.all(|(_, counted)| counted.now.scheduling == Scheduling::Fifo as u32)
     }
 
@@ -223,6 +228,9 @@ impl Collector {
             stages.push(self.row(role(Stage::Estimate), restarts, name, &area.estimate.whole, 0.0));
             stages.push(self.row(role(Stage::Identify), restarts, name, &area.identify.whole, 0.0));
         }
+        if configuration.record.is_some() {
+            stages.push(self.row(RECORD, restarts, "", &Latency::new(), 0.0));
+        }
         let scheduling = if self.all_fifo() { Scheduling::Fifo } else { Scheduling::Normal };
         let end_to_end: Vec<AreaRow> = self.areas.iter().map(AreaRecord::row).collect();
         let missed = |role: &Role| self.health.get(role).map_or(0, |counted| counted.now.missing);
@@ -260,7 +268,7 @@ impl Collector {
             given: counted.past.given + counted.now.given,
             lost: counted.past.lost + counted.now.lost,
             restarts: restarts.iter().find(|(known, _)| *known == role).map_or(0, |(_, n)| *n),
-            overflow: counted.now.overflow,
+            overflow: counted.past.overflow + counted.now.overflow,
             latency: Percentiles::of(latency, wait_us),
         }
     }
@@ -278,6 +286,7 @@ impl Counted {
         self.past.taken += self.now.taken;
         self.past.given += self.now.given;
         self.past.lost += self.now.lost;
+        self.past.overflow += self.now.overflow;
         *self = Self { past: self.past, ..Self::default() };
     }
 }

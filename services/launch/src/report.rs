@@ -144,6 +144,9 @@ impl fmt::Display for Report {
             "scheduling obtained: {}; samples missing in the units' own streams: {}, refused: {}",
             self.scheduling, self.missing_samples, self.refused_samples
         )?;
+        for row in self.stages.iter().filter(|row| row.overflow > 0) {
+            writeln!(f, "{} {} dropped {} messages that it could not work off", row.name, row.area, row.overflow)?;
+        }
         if self.cut_short {
             writeln!(f, "the streams did not end in time and were cut short")?;
         }

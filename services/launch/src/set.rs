@@ -14,6 +14,9 @@ pub struct Role {
     pub area: Option<usize>,
 }
 
+/// The recorder.
+pub const RECORD: Role = Role { stage: Stage::Record, area: None };
+
 /// How the set is doing.
 pub enum Outcome {
     Running,
@@ -60,7 +63,7 @@ impl Set {
     pub fn new(configuration: &Configuration, options: &Options, context: Context, restarts: Vec<(Role, u64)>) -> Self {
         let stage = match configuration.main.source {
             Source::Simulator => Stage::Simulate,
-            Source::Csv(_) => Stage::Replay,
+            Source::Csv(_) | Source::Mcap(_) => Stage::Replay,
         };
         let areas = configuration.areas.iter().map(|area| area.name.clone()).collect();
         let mut set = Self {
@@ -69,6 +72,8 @@ impl Set {
             source: Role { stage, area: None },
         };
         let mut roles = Vec::new();
+        // the readers of all first
+        roles.extend(configuration.record.iter().map(|_| RECORD));
         for area in 0..configuration.areas.len() {
             // readers before writers
             roles.extend(
@@ -94,7 +99,7 @@ impl Set {
 
     /// The stages that have to be ready before the source may start.
     pub fn workers(&self) -> impl Iterator<Item = Role> {
-        self.members.iter().map(|member| member.role).filter(|role| role.area.is_some())
+        self.members.iter().map(|member| member.role).filter(|role| *role != self.source)
     }
 
     /// Starts all but the source.
@@ -119,12 +124,16 @@ impl Set {
 
     /// Tells the source to end its streams.
     pub fn stop_source(&mut self) {
-        let source = self.source;
-        for child in
-            self.members.iter().filter(|member| member.role == source).filter_map(|member| member.child.as_ref())
-        {
-            // SAFETY: the process has not been waited for, so the number is still its own.
-            unsafe { libc::kill(child.id() as libc::pid_t, libc::SIGTERM) };
+        self.ask_to_leave(self.source);
+    }
+
+    fn ask_to_leave(&mut self, role: Role) {
+        let members = self.members.iter_mut().filter(|member| member.role == role);
+        for child in members.filter_map(|member| member.child.as_mut()) {
+            if matches!(child.try_wait(), Ok(None)) {
+                // SAFETY: the process has not been waited for, so the number is still its own.
+                unsafe { libc::kill(child.id() as libc::pid_t, libc::SIGTERM) };
+            }
         }
     }
 
@@ -164,6 +173,8 @@ impl Set {
 
     /// Waits briefly for those who are about to leave, and ends the others.
     pub fn kill(&mut self) {
+        // a recording should not look as if there had been a crash
+        self.ask_to_leave(RECORD);
         let until_ns = monotonic_ns() + 1_000_000_000;
         for child in self.members.iter_mut().filter_map(|member| member.child.as_mut()) {
             while monotonic_ns() < until_ns && matches!(child.try_wait(), Ok(None)) {
@@ -225,6 +236,9 @@ impl Spawner {
         }
         if let Some(area) = role.area {
             command.args(["--area", &self.areas[area]]);
+        }
+        if let Some(folder) = self.options.record.iter().find(|_| role == RECORD) {
+            command.arg("--folder").arg(folder);
         }
         if let Some(duration_s) = self.options.duration_s {
             command.arg("--duration").arg(format!("{}ns", (duration_s * 1e9).round()));

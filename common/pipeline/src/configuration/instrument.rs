@@ -12,6 +12,8 @@ use std::path::PathBuf;
 pub enum Source {
     /// A recording; the path is absolute.
     Csv(PathBuf),
+    /// A recorded run, which holds all units; the path is absolute.
+    Mcap(PathBuf),
     /// The simulator.
     Simulator,
 }
@@ -21,6 +23,7 @@ impl Source {
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Csv(_) => "csv",
+            Self::Mcap(_) => "mcap",
             Self::Simulator => "simulator",
         }
     }
@@ -30,6 +33,7 @@ impl Source {
 #[serde(rename_all = "snake_case")]
 enum Kind {
     Csv,
+    Mcap,
     Simulator,
 }
 
@@ -45,6 +49,8 @@ pub(super) fn source<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Sourc
     let source: SourceTable = table::one(deserializer)?;
     match (source.kind, source.path) {
         (Kind::Csv, Some(path)) => Ok(Source::Csv(path)),
+        (Kind::Mcap, Some(path)) => Ok(Source::Mcap(path)),
+        (Kind::Mcap, None) => Err(D::Error::custom("a source of kind \"mcap\" needs the key `path`")),
         (Kind::Csv, None) => Err(D::Error::custom("a source of kind \"csv\" needs the key `path`")),
         (Kind::Simulator, None) => Ok(Source::Simulator),
         (Kind::Simulator, Some(_)) => Err(D::Error::custom("a source of kind \"simulator\" has no `path`")),

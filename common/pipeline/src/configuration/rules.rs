@@ -1,7 +1,7 @@
 //! Rules that more than one key takes part in.
 
 use super::document::Document;
-use super::{Area, Configuration, ConfigurationError, RangeMethod, RegistrationMethod, Source};
+use super::{Area, Configuration, ConfigurationError, RangeMethod, RecordSettings, RegistrationMethod, Source};
 use std::path::Path;
 
 /// Makes the paths of the recordings absolute and checks the whole; all faults are reported.
@@ -13,7 +13,13 @@ pub(super) fn apply(configuration: &mut Configuration, document: &Document) -> R
     for (i, area) in configuration.areas.iter_mut().enumerate() {
         faults.extend(locate(&mut area.source, folder, &format!("area[{i}]"), document));
     }
-    sources(configuration, document, &mut faults);
+    if !configuration.as_recorded {
+        sources(configuration, document, &mut faults);
+    }
+    if let Some(record) = &mut configuration.record {
+        record.folder = folder.join(&record.folder);
+        faults.extend(budget(record, document));
+    }
     names(&configuration.areas, document, &mut faults);
     times(configuration, document, &mut faults);
     methods(&configuration.areas, document, &mut faults);
@@ -25,7 +31,7 @@ pub(super) fn apply(configuration: &mut Configuration, document: &Document) -> R
 }
 
 fn locate(source: &mut Source, folder: &Path, unit: &str, document: &Document) -> Option<ConfigurationError> {
-    let Source::Csv(path) = source else { return None };
+    let (Source::Csv(path) | Source::Mcap(path)) = source else { return None };
     *path = folder.join(&*path);
     let reason = match std::fs::metadata(&*path) {
         Ok(data) if data.is_dir() => "it is a folder".to_string(),
@@ -41,6 +47,9 @@ fn sources(configuration: &Configuration, document: &Document, faults: &mut Vec<
         if area.source.kind() != kind {
             let message = format!("all sources must be of one kind, and [main] has \"{kind}\"");
             faults.push(document.fault(&format!("area[{i}].source.kind"), &message));
+        } else if kind == "mcap" && area.source != configuration.main.source {
+            let message = "all units must come of the same recorded run, and [main] names another file";
+            faults.push(document.fault(&format!("area[{i}].source.path"), message));
         }
     }
     let mut useless = |key: &str| {
@@ -48,12 +57,17 @@ fn sources(configuration: &Configuration, document: &Document, faults: &mut Vec<
             faults.push(document.fault(key, &format!("has no effect with sources of kind \"{kind}\"")));
         }
     };
-    if kind == "csv" {
+    if kind != "simulator" {
         useless("simulation");
         (0..configuration.areas.len()).for_each(|i| useless(&format!("area[{i}].simulation")));
     } else {
         useless("replay");
     }
+}
+
+fn budget(record: &RecordSettings, document: &Document) -> Option<ConfigurationError> {
+    let message = "must be at least twice record.rotate_mb, since the file that is being written is never removed";
+    record.budget.filter(|budget| *budget < 2.0 * record.rotate).map(|_| document.fault("record.budget_mb", message))
 }
 
 fn names(areas: &[Area], document: &Document, faults: &mut Vec<ConfigurationError>) {
