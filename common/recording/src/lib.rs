@@ -26,7 +26,7 @@ pub use mcap::MAGIC;
 #[derive(Debug, thiserror::Error)]
 pub enum FormatError {
     /// The file's own structure, or the file.
-    #[error(transparent)]
+    #[error("{}", reason(.0))]
     File(#[from] mcap::McapError),
     /// A message's bytes are not those of its schema.
     #[error("a message of topic {topic} cannot be read: {reason}")]
@@ -36,4 +36,12 @@ pub enum FormatError {
         /// What is wrong with it.
         reason: prost::DecodeError,
     },
+}
+
+/// The library does not pass on what the operating system says.
+fn reason(error: &mcap::McapError) -> String {
+    match error {
+        mcap::McapError::Io(error) => error.to_string(),
+        other => other.to_string(),
+    }
 }

@@ -63,7 +63,8 @@ struct Part {
 
 impl Part {
     fn create(path: PathBuf, about: &About) -> Result<Self, FormatError> {
-        let file = File::create_new(&path).map_err(mcap_error)?;
+        // one of this name could only be a remnant without messages that could not be removed
+        let file = File::create(&path).map_err(mcap_error)?;
         let same = file.try_clone().map_err(mcap_error)?;
         let begun = Writer::new(BufWriter::with_capacity(BUFFER, file), about);
         let mut part = Self { writer: begun?, file: same, path, sound: 0, written: 0, messages: 0 };

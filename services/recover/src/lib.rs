@@ -113,7 +113,9 @@ impl fmt::Display for Report {
             writeln!(f, "  {count:>9} {topic}, the last {:.3} s before the end", last - last_s)?;
         }
         match &self.cut {
-            Some((bytes, reason)) => write!(f, "cut: the last {bytes} bytes could not be read ({reason})"),
+            Some((bytes, reason)) => {
+                write!(f, "cut: the end is missing ({reason}), and of what is there {bytes} bytes cannot be read")
+            }
             None => write!(f, "the recording was complete"),
         }
     }
