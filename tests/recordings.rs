@@ -179,11 +179,12 @@ fn a_recorded_run_is_a_source() {
 #[test]
 fn a_killed_recorder_loses_a_second_at_most() {
     let place = Place::new();
-    let (path, folder) = recording(&place, "killed", &demo(33, 1.0), "");
+    let replayed = recorded(&place, 33, 20.0, 4.0, 4.0);
+    let (path, folder) = recording(&place, "killed", &fs::read_to_string(replayed).unwrap(), "");
     let alone = one_at_a_time();
-    let mut launch = Launch::start(&place, "live", &path, Some("10s"));
-    launch.eventually("six seconds of rows", |launch| {
-        launch.written("radar").filter(|row| row.lines().nth(1).is_some_and(|row| row[..2].starts_with("6.")))
+    let mut launch = Launch::start(&place, "live", &path, None);
+    launch.eventually("a valid row", |launch| {
+        launch.written("radar").filter(|row| row.lines().nth(1).is_some_and(|row| row.split(',').nth(1) == Some("1")))
     });
     let pid = launch.stage("record", None);
     let killed_ns = runtime::monotonic_ns();
@@ -192,7 +193,7 @@ fn a_killed_recorder_loses_a_second_at_most() {
     let live = launch.end();
     drop(alone);
     let report = live.well();
-    for stage in ["simulate", "synchronise", "estimate", "identify"] {
+    for stage in ["replay", "synchronise", "estimate", "identify"] {
         assert_eq!((of_stage(report, stage, "restarts"), of_stage(report, stage, "lost")), (0, 0), "{stage}");
     }
     assert_eq!(of_stage(report, "record", "restarts"), 1);
@@ -248,9 +249,10 @@ fn limit_files(pid: u32, bytes: Option<u64>) {
 #[test]
 fn a_full_disk_does_not_touch_the_estimator() {
     let place = Place::new();
-    let (path, folder) = recording(&place, "full", &demo(34, 2.0), "flush_s = 0.1");
+    let replayed = recorded(&place, 34, 20.0, 4.0, 4.0);
+    let (path, folder) = recording(&place, "full", &fs::read_to_string(replayed).unwrap(), "flush_s = 0.1");
     let _alone = one_at_a_time();
-    let mut launch = Launch::start(&place, "live", &path, Some("9s"));
+    let mut launch = Launch::start(&place, "live", &path, None);
     let pid = launch.stage("record", None);
     launch.eventually("a recording", |_| files_if_any(&folder).first().filter(|file| size(file) > 200_000).cloned());
     limit_files(pid, Some(20_000));
@@ -258,11 +260,11 @@ fn a_full_disk_does_not_touch_the_estimator() {
     limit_files(pid, None);
     let live = launch.end();
     let report = live.well();
-    for stage in ["simulate", "synchronise", "estimate", "identify", "record"] {
+    for stage in ["replay", "synchronise", "estimate", "identify", "record"] {
         assert_eq!((of_stage(report, stage, "restarts"), of_stage(report, stage, "lost")), (0, 0), "{stage}");
     }
     assert_eq!(report["late_parameters"], 0, "the host is too slow for a comparison");
-    assert_eq!(first_difference(&live.solutions("radar"), &offline(&configuration(&path, 9.0)).0), None);
+    assert_eq!(first_difference(&live.solutions("radar"), &offline(&configuration(&path, 20.0)).0), None);
     let dropped = of_stage(report, "record", "overflow");
     assert!(dropped > 500, "{dropped} dropped");
     assert_eq!(of_stage(report, "record", "in"), of_stage(report, "record", "out") + dropped);
