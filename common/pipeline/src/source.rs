@@ -35,7 +35,7 @@ pub enum Source {
 /// Recorded units.
 pub enum Recorded {
     /// A recording each.
-    Rows(Merged),
+    Rows(Box<Merged>),
     /// A recorded run.
     Run(Box<Playback>),
 }
@@ -110,7 +110,7 @@ impl Recorded {
     pub fn open(configuration: &Configuration, run_id: u64) -> Result<Self, RecordingError> {
         Ok(match &configuration.main.source {
             Kind::Mcap(path) => Self::Run(Box::new(Playback::open(path, configuration, run_id)?)),
-            _ => Self::Rows(Merged::open(configuration, run_id)?),
+            _ => Self::Rows(Box::new(Merged::open(configuration, run_id)?)),
         })
     }
 

@@ -43,7 +43,7 @@ pub struct Disk {
 }
 
 enum State {
-    Open(Part),
+    Open(Box<Part>),
     /// Nothing can be written; when to try again.
     Refused(Instant),
 }
@@ -173,7 +173,7 @@ impl Disk {
         let begun = self.names.make_folder().map_err(mcap_error).and_then(|()| Part::create(path.clone(), &about));
         match begun {
             Ok(part) => {
-                self.state = State::Open(part);
+                self.state = State::Open(Box::new(part));
                 self.names.advance();
                 self.plan.about.from_the_start = false;
                 self.flushed = Instant::now();
@@ -208,7 +208,7 @@ impl Disk {
     fn close(&mut self, end_of_run: bool) {
         let retry = State::Refused(Instant::now());
         let State::Open(part) = std::mem::replace(&mut self.state, retry) else { return };
-        let Part { writer, path, messages, file, sound, .. } = part;
+        let Part { writer, path, messages, file, sound, .. } = *part;
         let ending = Ending { end_of_run, dropped: self.tally.dropped(), lost: self.tally.lost() };
         match writer.finish(&ending).and_then(|out| out.into_inner().map_err(|error| mcap_error(error.into_error()))) {
             Ok(_) => self.tally.write(messages),

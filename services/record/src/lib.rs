@@ -45,6 +45,8 @@ pub enum RecordError {
 }
 
 /// Something for the disk.
+// boxed, each message would be allocated by one thread and freed by another
+#[allow(clippy::large_enum_variant)]
 enum Item {
     /// A message of a topic, by its place in the list of topics, and its time since 1970.
     Message { topic: usize, time_ns: u64, record: Record },
