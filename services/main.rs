@@ -4,6 +4,7 @@ use clap::{Args, Parser, Subcommand};
 use pipeline::configuration::Configuration;
 use runtime::{Context, POISONED_EXIT_CODE, TransportError};
 use std::error::Error;
+use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -37,9 +38,13 @@ enum Command {
         /// Write the health of all stages for Prometheus's node exporter, every five seconds
         #[arg(long, value_name = "FILE")]
         prometheus: Option<PathBuf>,
+        /// Record everything there, whatever folder [record] names
+        #[arg(long, value_name = "DIR")]
+        record: Option<PathBuf>,
     },
     /// Run the same steps in one thread without transport, as fast as it goes
     Process {
+        /// Or a recorded run, to go through it again as it was
         configuration: PathBuf,
         /// Length of the data, such as 60s or 10min
         #[arg(long, value_parser = humantime::parse_duration)]
@@ -90,6 +95,19 @@ enum Command {
     Simulate(SimulateArgs),
     /// Stage: units on wires (started by launch)
     Acquire(StageArgs),
+    /// Complete a recording that was cut, and say what it holds
+    Recover {
+        recording: PathBuf,
+        /// The new file; without it beside the recording, with the ending .recovered.mcap
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
+    /// Write a recorded run as CSV files
+    Export {
+        recording: PathBuf,
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
     /// Stage: recorded units (started by launch)
     Replay(StageArgs),
     /// Stage: one area's samples onto the main unit's instants (started by launch)
@@ -100,6 +118,17 @@ enum Command {
     Identify(AreaArgs),
     /// Stage: telegrams on the ship's wires (started by launch where the configuration has outputs)
     Output(StageArgs),
+    /// Stage: the recorder (started by launch)
+    Record(RecordArgs),
+}
+
+#[derive(Args)]
+struct RecordArgs {
+    #[command(flatten)]
+    stage: StageArgs,
+    /// Where to record, whatever folder [record] names
+    #[arg(long, value_name = "DIR")]
+    folder: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -183,8 +212,8 @@ type Outcome = Result<ExitCode, Box<dyn Error>>;
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
-        Command::Launch { configuration, duration, json, hlog, out, prometheus } => {
-            launch(configuration, duration, json, hlog, out, prometheus)
+        Command::Launch { configuration, duration, json, hlog, out, prometheus, record } => {
+            launch(configuration, duration, json, hlog, out, prometheus, record)
         }
         Command::Process { configuration, duration, out } => process(configuration, duration, &out),
         Command::Check { configuration } => check(configuration),
@@ -198,11 +227,14 @@ fn main() -> ExitCode {
         }
         Command::Simulate(args) => simulate(args),
         Command::Acquire(args) => stage(&args, acquire::run),
+        Command::Recover { recording, out } => recover(&recording, out.as_deref()),
+        Command::Export { recording, out } => export(&recording, &out),
         Command::Replay(args) => stage(&args, replay::run),
         Command::Synchronise(args) => of_area(&args, synchronise::run),
         Command::Estimate(args) => of_area(&args, estimate::run),
         Command::Identify(args) => of_area(&args, identify::run),
         Command::Output(args) => stage(&args, output::run),
+        Command::Record(args) => record(&args),
     };
     outcome.unwrap_or_else(|error| failed(error.as_ref()))
 }
@@ -213,7 +245,8 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
     let poisoned = error.downcast_ref::<TransportError>().is_some_and(TransportError::is_poisoned)
         || matches!(error.downcast_ref(), Some(replay::ReplayError::Transport(error)) if error.is_poisoned())
         || matches!(error.downcast_ref(), Some(acquire::AcquireError::Transport(error)) if error.is_poisoned())
-        || matches!(error.downcast_ref(), Some(output::OutputError::Transport(error)) if error.is_poisoned());
+        || matches!(error.downcast_ref(), Some(output::OutputError::Transport(error)) if error.is_poisoned())
+        || matches!(error.downcast_ref(), Some(record::RecordError::Transport(error)) if error.is_poisoned());
     let unusable = error.is::<pipeline::configuration::ConfigurationError>()
         || error.is::<check::CheckError>()
         || matches!(error.downcast_ref(), Some(bound::BoundError::Configuration(_)))
@@ -223,6 +256,10 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
         || error.is::<simulate::EmulatorError>()
         || matches!(error.downcast_ref(), Some(output::OutputError::Destination { .. }))
         || matches!(error.downcast_ref(), Some(launch::LaunchError::Refused(_)))
+        || matches!(error.downcast_ref(), Some(record::RecordError::Configuration(_) | record::RecordError::Nowhere))
+        || error.is::<recover::RecoverError>()
+        || error.is::<export::ExportError>()
+        || error.is::<NoFolder>()
         || error.is::<NoSuchArea>()
         || error.is::<Endless>();
     match (poisoned, unusable) {
@@ -247,13 +284,18 @@ fn launch(
     hlog: Option<PathBuf>,
     out: Option<PathBuf>,
     prometheus: Option<PathBuf>,
+    record: Option<PathBuf>,
 ) -> Outcome {
-    let configuration = read(&path, duration)?;
+    let mut configuration = read(&path, duration)?;
+    record.iter().for_each(|folder| configuration.record_in(folder));
     // before any process starts
     check_recordings(&path)?;
+    if let Some(record) = &configuration.record {
+        std::fs::create_dir_all(&record.folder).map_err(|reason| NoFolder(record.folder.clone(), reason))?;
+    }
     let duration_s = duration.map(|d| d.as_secs_f64());
     let program = std::env::current_exe()?;
-    let options = launch::Options { program, configuration: path, duration_s, out, hlog, prometheus };
+    let options = launch::Options { program, configuration: path, duration_s, out, record, hlog, prometheus };
     let report = launch::run(&configuration, &options)?;
     print!("{report}");
     if let Some(json) = json {
@@ -296,6 +338,27 @@ fn bound(options: &bound::Options) -> Outcome {
 fn reproduce(options: &reproduce::Options) -> Outcome {
     print!("{}", reproduce::run(options)?);
     Ok(ExitCode::SUCCESS)
+}
+
+fn recover(recording: &std::path::Path, out: Option<&std::path::Path>) -> Outcome {
+    println!("{}", recover::run(recording, out)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn export(recording: &std::path::Path, out: &std::path::Path) -> Outcome {
+    print!("{}", export::run(recording, out)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn record(args: &RecordArgs) -> Outcome {
+    stage(&args.stage, |configuration, context| {
+        let mut configuration = configuration.clone();
+        args.folder.iter().for_each(|folder| configuration.record_in(folder));
+        record::run(&configuration, context, |line| {
+            // a log on the disk that is full must not end the recorder
+            let _ = writeln!(std::io::stderr(), "deckflex record: {line}");
+        })
+    })
 }
 
 fn stage<E: Into<Box<dyn Error>>>(
@@ -359,6 +422,17 @@ impl std::fmt::Display for NoSuchArea {
 }
 
 impl Error for NoSuchArea {}
+
+#[derive(Debug)]
+struct NoFolder(PathBuf, std::io::Error);
+
+impl std::fmt::Display for NoFolder {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "cannot record in {}: {}", self.0.display(), self.1)
+    }
+}
+
+impl Error for NoFolder {}
 
 #[derive(Debug)]
 struct Endless;

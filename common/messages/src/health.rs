@@ -76,6 +76,8 @@ code! {
         Acquire = 5 => "acquire",
         /// Telegrams on the ship's wires.
         Output = 6 => "output",
+        /// The recorder.
+        Record = 7 => "record",
     }
 }
 

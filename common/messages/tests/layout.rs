@@ -48,6 +48,7 @@ fn codes_come_back() {
         Stage::Identify,
         Stage::Acquire,
         Stage::Output,
+        Stage::Record,
     ] {
         assert_eq!(Stage::from_code(stage as u32), Some(stage));
     }

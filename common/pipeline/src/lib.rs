@@ -4,6 +4,7 @@ pub mod alarm;
 pub mod configuration;
 pub mod lane;
 pub mod offline;
+pub mod recorded_run;
 pub mod recording;
 pub mod solution_file;
 pub mod source;

@@ -4,11 +4,13 @@
 
 use crate::configuration::Configuration;
 use crate::lane;
+use crate::recorded_run::Course;
 use crate::recording::RecordingError;
 use crate::source::{Batch, Source};
 use estimation::synchronise::{Counts, Synchroniser};
 use estimation::{Estimator, Identifier};
 use messages::{FlexureParams, Solution, Truth};
+use std::collections::VecDeque;
 
 /// Takes what the loop gives, area by area, in order.
 pub trait Sink {
@@ -16,30 +18,48 @@ pub trait Sink {
     fn truth(&mut self, _truth: &Truth) {}
     /// A solution.
     fn solution(&mut self, solution: &Solution);
-    /// A parameter set, when it is made.
+    /// A parameter set, when it is learnt.
     fn parameters(&mut self, _parameters: &FlexureParams) {}
 }
 
 struct Lane {
     synchroniser: Synchroniser,
     estimator: Box<dyn Estimator>,
-    identifier: Box<dyn Identifier + Send>,
+    parameters: Parameters,
+}
+
+/// Where parameter sets come from.
+enum Parameters {
+    /// They are learnt.
+    Learnt(Box<dyn Identifier + Send>),
+    /// They are those of a recorded run, at the samples at which they took effect.
+    Recorded(VecDeque<(u64, FlexureParams)>),
 }
 
 impl Lane {
-    fn new(configuration: &Configuration, area: usize) -> Self {
+    fn new(configuration: &Configuration, area: usize, recorded: Option<VecDeque<(u64, FlexureParams)>>) -> Self {
         Self {
             synchroniser: lane::synchroniser(configuration, area),
             estimator: lane::estimator(configuration, area),
-            identifier: lane::identifier(configuration, area),
+            parameters: match recorded {
+                Some(sets) => Parameters::Recorded(sets),
+                None => Parameters::Learnt(lane::identifier(configuration, area)),
+            },
         }
     }
 
     fn work_off(&mut self, sink: &mut dyn Sink) {
         while let Some(pair) = self.synchroniser.pair() {
+            if let Parameters::Recorded(sets) = &mut self.parameters {
+                while let Some((_, set)) = sets.pop_front_if(|(number, _)| *number <= pair.header.sequence) {
+                    self.estimator.offer(set);
+                }
+            }
             let solution = self.estimator.step(&pair);
             sink.solution(&solution);
-            if let Some(parameters) = self.identifier.step(&pair, &solution) {
+            if let Parameters::Learnt(identifier) = &mut self.parameters
+                && let Some(parameters) = identifier.step(&pair, &solution)
+            {
                 sink.parameters(&parameters);
                 self.estimator.offer(parameters);
             }
@@ -61,8 +81,25 @@ pub struct Outcome {
 /// # Errors
 /// A recording cannot be opened.
 pub fn run(configuration: &Configuration, sink: &mut dyn Sink) -> Result<Outcome, RecordingError> {
+    go(configuration, |_| None, sink)
+}
+
+/// Goes through a recorded run again: with its parameter sets at the samples at which they took effect, and no further than it goes.
+///
+/// # Errors
+/// The recorded run cannot be opened.
+pub fn again(configuration: &Configuration, course: &Course, sink: &mut dyn Sink) -> Result<Outcome, RecordingError> {
+    go(configuration, |area| course.adoptions(area), sink)
+}
+
+fn go(
+    configuration: &Configuration,
+    sets: impl Fn(usize) -> Option<VecDeque<(u64, FlexureParams)>>,
+    sink: &mut dyn Sink,
+) -> Result<Outcome, RecordingError> {
     let mut source = Source::open(configuration, 0)?;
-    let mut lanes: Vec<Lane> = (0..configuration.areas.len()).map(|area| Lane::new(configuration, area)).collect();
+    let areas = 0..configuration.areas.len();
+    let mut lanes: Vec<Lane> = areas.map(|area| Lane::new(configuration, area, sets(area))).collect();
     let mut batch = Batch::default();
     while source.next(&mut batch) {
         batch.truth.iter().for_each(|truth| sink.truth(truth));
@@ -75,9 +112,12 @@ pub fn run(configuration: &Configuration, sink: &mut dyn Sink) -> Result<Outcome
         }
         lanes.iter_mut().for_each(|lane| lane.work_off(sink));
     }
-    for lane in &mut lanes {
-        lane.synchroniser.end();
-        lane.work_off(sink);
+    // behind a cut the run had samples that its last pairs were made with
+    if !configuration.as_recorded || source.whole() {
+        for lane in &mut lanes {
+            lane.synchroniser.end();
+            lane.work_off(sink);
+        }
     }
     let areas = lanes.iter().map(|lane| lane.synchroniser.counts()).collect();
     Ok(Outcome { areas, unreadable_rows: source.unreadable_rows() })

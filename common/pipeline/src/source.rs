@@ -1,6 +1,7 @@
 //! Where samples come from: the simulator or recordings, one main sample at a time.
 
 use crate::configuration::{Configuration, Source as Kind};
+use crate::recorded_run::Playback;
 use crate::recording::{Recording, RecordingError, Row};
 use frames::unit::nanoseconds;
 use messages::{ImuSample, MainAttitude, Truth};
@@ -31,8 +32,16 @@ pub enum Source {
     Recorded(Box<Recorded>),
 }
 
+/// Recorded units.
+pub enum Recorded {
+    /// A recording each.
+    Rows(Box<Merged>),
+    /// A recorded run.
+    Run(Box<Playback>),
+}
+
 /// Recordings of the main unit and of each area, merged by time.
-pub struct Recorded {
+pub struct Merged {
     main: Option<Recording>,
     areas: Vec<Area>,
     next: Option<Row>,
@@ -54,8 +63,18 @@ impl Source {
     pub fn open(configuration: &Configuration, run_id: u64) -> Result<Self, RecordingError> {
         match &configuration.main.source {
             Kind::Simulator => Ok(Self::Simulated(Box::new(Simulator::new(&configuration.scenario(run_id))))),
-            Kind::Csv(_) => Recorded::open(configuration, run_id).map(|recorded| Self::Recorded(Box::new(recorded))),
             source @ Kind::Line(_) => Err(RecordingError::Live(source.kind())),
+            Kind::Csv(_) | Kind::Mcap(_) => {
+                Recorded::open(configuration, run_id).map(|recorded| Self::Recorded(Box::new(recorded)))
+            }
+        }
+    }
+
+    /// Whether all streams have come to their ends, and are not cut off.
+    pub fn whole(&self) -> bool {
+        match self {
+            Self::Recorded(recorded) => recorded.whole(),
+            Self::Simulated(_) => true,
         }
     }
 
@@ -90,6 +109,38 @@ impl Recorded {
     /// # Errors
     /// A recording cannot be opened or its columns are not known.
     pub fn open(configuration: &Configuration, run_id: u64) -> Result<Self, RecordingError> {
+        Ok(match &configuration.main.source {
+            Kind::Mcap(path) => Self::Run(Box::new(Playback::open(path, configuration, run_id)?)),
+            _ => Self::Rows(Box::new(Merged::open(configuration, run_id)?)),
+        })
+    }
+
+    /// How many rows or messages could not be read.
+    pub fn refused(&self) -> u64 {
+        match self {
+            Self::Rows(merged) => merged.refused(),
+            Self::Run(playback) => playback.unreadable(),
+        }
+    }
+
+    /// Fills in the next batch; `false` at the end of the main unit's samples or of the run's duration.
+    pub fn next(&mut self, batch: &mut Batch) -> bool {
+        match self {
+            Self::Rows(merged) => merged.next(batch),
+            Self::Run(playback) => playback.next(batch),
+        }
+    }
+
+    fn whole(&self) -> bool {
+        match self {
+            Self::Rows(_) => true,
+            Self::Run(playback) => playback.whole(),
+        }
+    }
+}
+
+impl Merged {
+    fn open(configuration: &Configuration, run_id: u64) -> Result<Self, RecordingError> {
         let interval_ns = configuration.interval_ns();
         let open = |path: &Path, unit: usize| Recording::open(path, unit as u32, run_id, interval_ns);
         let mut areas = Vec::new();
@@ -102,21 +153,19 @@ impl Recorded {
         }
         let mut main = match &configuration.main.source {
             Kind::Csv(path) => Some(open(path, 0)?),
-            Kind::Simulator | Kind::Line(_) => None,
+            Kind::Mcap(_) | Kind::Simulator | Kind::Line(_) => None,
         };
         let next = main.as_mut().and_then(Iterator::next);
         let duration_ns = configuration.run.duration_s.map_or(i64::MAX, nanoseconds);
         Ok(Self { main, areas, next, duration_ns, begin_ns: None })
     }
 
-    /// How many rows of all recordings could not be read.
-    pub fn refused(&self) -> u64 {
+    fn refused(&self) -> u64 {
         let areas = self.areas.iter().map(|area| &area.recording);
         self.main.iter().chain(areas).map(|recording| recording.counts().refused).sum()
     }
 
-    /// Fills in the next batch; `false` at the end of the main recording or of the run's duration.
-    pub fn next(&mut self, batch: &mut Batch) -> bool {
+    fn next(&mut self, batch: &mut Batch) -> bool {
         batch.sub.clear();
         let Some(row) = self.next.take() else { return false };
         let time_ns = row.sample.header.time_ns;

@@ -1,6 +1,6 @@
 use crate::scheduling::{self, Request};
 use crate::{Area, Connection, Domain, Stop, TransportError, die_with_parent};
-use messages::Stage;
+use messages::{Scheduling, Stage};
 use std::path::PathBuf;
 
 /// What the launcher tells each of its stages.
@@ -34,6 +34,8 @@ impl Context {
         let mut connection = Connection::open(&domain, stage, area, self.run_id)?;
         let obtained = match stage {
             Stage::Identify => scheduling::lower(),
+            // nobody waits for it, and it must not fall behind for seconds
+            Stage::Record => Scheduling::Normal,
             _ => scheduling::apply(self.scheduling, PRIORITY),
         };
         connection.beat.health.scheduling = obtained as u32;

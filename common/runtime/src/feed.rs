@@ -93,10 +93,12 @@ impl Feed {
     /// As [`Publisher::publish`].
     pub fn publish(&mut self, due_ns: i64, delivery: &Delivery<'_>) -> Result<(), TransportError> {
         for truth in delivery.truth {
-            self.truths[truth.area as usize].publish(truth)?;
+            let header = handed_out(&truth.header, due_ns);
+            self.truths[truth.area as usize].publish(&Truth { header, ..*truth })?;
         }
         if let Some(attitude) = delivery.attitude {
-            self.attitude.publish(attitude)?;
+            let header = handed_out(&attitude.header, due_ns);
+            self.attitude.publish(&MainAttitude { header, ..*attitude })?;
         }
         for sample in delivery.sub {
             let unit = sample.unit as usize;
@@ -141,8 +143,15 @@ impl Feed {
         let ordinal = &mut self.ordinals[sample.unit as usize];
         sample.ordinal = *ordinal;
         *ordinal += 1;
-        sample.header.stamps.due_ns = due_ns;
-        sample.header.stamps.source_ns = monotonic_ns();
+        sample.header = handed_out(&sample.header, due_ns);
         sample
     }
+}
+
+/// The header of a message that is handed out now.
+fn handed_out(header: &Header, due_ns: i64) -> Header {
+    let mut header = *header;
+    header.stamps.due_ns = due_ns;
+    header.stamps.source_ns = monotonic_ns();
+    header
 }

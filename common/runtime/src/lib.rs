@@ -50,7 +50,7 @@ pub use gap::Sequence;
 pub use latency::{IntervalLog, Latency, Summary};
 pub use node::Node;
 pub use port::{Anchor, Publisher, Subscriber};
-pub use signal::{Stop, die_with_parent};
+pub use signal::{Stop, die_with_parent, fail_beyond_file_limit};
 pub use stage::{Area, Beat, Connection};
 pub use utc::{HostUtc, host_utc};
 pub use waiter::{Waiter, Wake};

@@ -27,6 +27,18 @@ impl Stop {
     }
 }
 
+/// Has a write beyond the limit of a file's size fail like one on a full disk, instead of ending the process.
+///
+/// # Errors
+/// If the operating system refuses.
+pub fn fail_beyond_file_limit() -> Result<(), TransportError> {
+    // SAFETY: the signal number and the disposition are constants of the call.
+    match unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) } {
+        libc::SIG_ERR => Err(TransportError::last_os("signal")),
+        _ => Ok(()),
+    }
+}
+
 /// Has SIGTERM sent to this process when its parent dies, so that no stage outlives its launcher.
 ///
 /// The kernel watches the THREAD that started this process: a launcher must start its stages from a thread that lives as long as

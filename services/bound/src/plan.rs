@@ -71,10 +71,13 @@ fn require_truth(configuration: &Configuration, text: &str) -> Result<(), Config
         ConfigurationError::Invalid { path: path.clone(), line, message }
     };
     let stated: Stated = toml::from_str(text).map_err(|error| fault(None, error.message().to_owned()))?;
-    if let Source::Csv(_) = configuration.main.source {
-        let message = "main.source.kind = \"csv\": a bound needs simulated motion and a true flexure: give every unit \
-                       source = { kind = \"simulator\" }, and add [simulation] and [area.simulation] with `flexure`";
-        return Err(fault(Some(stated.main.source.span().start), message.to_owned()));
+    if configuration.main.source != Source::Simulator {
+        let message = format!(
+            "main.source.kind = \"{}\": a bound needs simulated motion and a true flexure: give every unit \
+             source = {{ kind = \"simulator\" }}, and add [simulation] and [area.simulation] with `flexure`",
+            configuration.main.source.kind()
+        );
+        return Err(fault(Some(stated.main.source.span().start), message));
     }
     let mut faults = Vec::new();
     if stated.simulation.is_none() {

@@ -7,6 +7,7 @@ pub use listen::{Listened, listen};
 pub use report::{Report, Unit};
 
 use pipeline::configuration::{Configuration, ConfigurationError, Source};
+use pipeline::recorded_run::Course;
 use pipeline::recording::{RecordingError, head};
 use std::path::Path;
 
@@ -24,7 +25,7 @@ pub enum CheckError {
     Recordings(Vec<RecordingError>),
 }
 
-/// Reads the configuration and looks at the beginning of each of its recordings.
+/// Reads the configuration and looks at the beginning of each of its recordings, or through its recorded run.
 ///
 /// # Errors
 /// The configuration is not sound, or a recording cannot be read, has an unknown header or no usable row.
@@ -34,6 +35,13 @@ pub fn run(path: &Path) -> Result<Report, CheckError> {
     let areas = configuration.areas.iter().map(|area| (area.name.as_str(), &area.source));
     let mut units = Vec::new();
     let mut errors = Vec::new();
+    let mut run = None;
+    if let Source::Mcap(path) = &configuration.main.source {
+        match Course::read(path, &configuration) {
+            Ok(course) => run = Some(course),
+            Err(error) => errors.push(error),
+        }
+    }
     for (name, source) in main.chain(areas) {
         let Source::Csv(recording) = source else { continue };
         match head(recording, ROWS, configuration.rate_hz) {
@@ -41,5 +49,5 @@ pub fn run(path: &Path) -> Result<Report, CheckError> {
             Err(error) => errors.push(error),
         }
     }
-    if errors.is_empty() { Ok(Report { configuration, units }) } else { Err(CheckError::Recordings(errors)) }
+    if errors.is_empty() { Ok(Report { configuration, units, run }) } else { Err(CheckError::Recordings(errors)) }
 }

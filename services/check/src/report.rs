@@ -1,4 +1,5 @@
 use pipeline::configuration::Configuration;
+use pipeline::recorded_run::Course;
 use pipeline::recording::Head;
 use std::fmt;
 use std::path::PathBuf;
@@ -10,6 +11,8 @@ pub struct Report {
     pub configuration: Configuration,
     /// The units that are recordings, the main unit first; none with the simulator.
     pub units: Vec<Unit>,
+    /// How the recorded run went that is the source of all units.
+    pub run: Option<Course>,
 }
 
 /// A unit that is a recording.
@@ -52,6 +55,7 @@ impl fmt::Display for Report {
         for unit in &self.units {
             write!(f, "{unit}")?;
         }
+        self.run.iter().try_for_each(|run| write!(f, "{run}"))?;
         for text in self.suspicions() {
             writeln!(f, "suspicious: {text}")?;
         }

@@ -4,13 +4,13 @@ use crate::lines::Lines;
 use crate::outputs::{OutputRecord, OutputRow};
 use crate::recorded::Recorded;
 use crate::report::{AreaRow, Percentiles, Report, StageRow};
-use crate::set::Role;
+use crate::set::{RECORD, Role};
 use crate::{LaunchError, Options};
 use messages::{
     Flags, FlexureParams, Health, ImuPair, ImuSample, MainAttitude, OutputState, Scheduling, Solution, Stage, State,
     Truth, topic,
 };
-use pipeline::configuration::{Configuration, Source};
+use pipeline::configuration::Configuration;
 use pipeline::solution_file::SolutionFile;
 use pipeline::summary::{Figures, Summary};
 use runtime::{Anchor, Latency, Node, Sequence, Subscriber, TransportError, Wake};
@@ -106,6 +106,7 @@ struct Totals {
     taken: u64,
     given: u64,
     lost: u64,
+    overflow: u64,
 }
 
 impl Collector {
@@ -114,11 +115,7 @@ impl Collector {
         for folder in options.out.iter().chain(&options.hlog) {
             std::fs::create_dir_all(folder).map_err(LaunchError::output(folder))?;
         }
-        let stage = match configuration.main.source {
-            Source::Simulator => Stage::Simulate,
-            Source::Csv(_) => Stage::Replay,
-            Source::Line(_) => Stage::Acquire,
-        };
+        let stage = configuration.main.source.stage();
         let hlog = options.hlog.as_deref();
         let areas = configuration
             .areas
@@ -161,7 +158,8 @@ impl Collector {
             ports.outputs.push(Subscriber::open(node, &topic::output(number))?);
         }
         let output = (!self.outputs.is_empty()).then_some(OUTPUT);
-        for role in output.into_iter().chain([self.source]) {
+        let record = configuration.record.is_some().then_some(RECORD);
+        for role in output.into_iter().chain(record).chain([self.source]) {
             ports.health.push((role, Subscriber::open(node, &topic::health(role.stage, None))?));
         }
         Ok(ports)
@@ -207,7 +205,8 @@ impl Collector {
 
     /// Whether every fast stage that has spoken runs in the real-time class.
     pub fn all_fifo(&self) -> bool {
-        let mut fast = self.health.iter().filter(|(role, counted)| role.stage != Stage::Identify && counted.seen);
+        let slow = [Stage::Identify, Stage::Record];
+        let mut fast = self.health.iter().filter(|(role, counted)| !slow.contains(&role.stage) && counted.seen);
         fast.all(|(_, counted)| counted.now.scheduling == Scheduling::Fifo as u32)
     }
 
@@ -270,6 +269,9 @@ impl Collector {
         if !self.outputs.is_empty() {
             stages.push(self.row(OUTPUT, restarts, "", &Latency::new(), 0.0));
         }
+        if configuration.record.is_some() {
+            stages.push(self.row(RECORD, restarts, "", &Latency::new(), 0.0));
+        }
         let scheduling = if self.all_fifo() { Scheduling::Fifo } else { Scheduling::Normal };
         let end_to_end: Vec<AreaRow> = self.areas.iter().map(AreaRecord::row).collect();
         let missed = |role: &Role| self.health.get(role).map_or(0, |counted| counted.now.missing);
@@ -309,7 +311,7 @@ impl Collector {
             given: counted.past.given + counted.now.given,
             lost: counted.past.lost + counted.now.lost,
             restarts: restarts.iter().find(|(known, _)| *known == role).map_or(0, |(_, n)| *n),
-            overflow: counted.now.overflow,
+            overflow: counted.past.overflow + counted.now.overflow,
             latency: Percentiles::of(latency, wait_us),
         }
     }
@@ -327,6 +329,7 @@ impl Counted {
         self.past.taken += self.now.taken;
         self.past.given += self.now.given;
         self.past.lost += self.now.lost;
+        self.past.overflow += self.now.overflow;
         *self = Self { past: self.past, ..Self::default() };
     }
 }

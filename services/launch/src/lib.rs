@@ -37,6 +37,8 @@ pub struct Options {
     pub duration_s: Option<f64>,
     /// Folder for the solution files and the summary.
     pub out: Option<PathBuf>,
+    /// `--record`: folder for the recording, if it is not that of the configuration.
+    pub record: Option<PathBuf>,
     /// Folder for the latency logs.
     pub hlog: Option<PathBuf>,
     /// Text file of the stages' health, for the node exporter of Prometheus.

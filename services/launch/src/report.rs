@@ -152,6 +152,9 @@ impl fmt::Display for Report {
             self.scheduling, self.missing_samples, self.refused_samples
         )?;
         self.lines.iter().try_for_each(|line| writeln!(f, "{line}"))?;
+        for row in self.stages.iter().filter(|row| row.overflow > 0) {
+            writeln!(f, "{} {} dropped {} messages that it could not work off", row.name, row.area, row.overflow)?;
+        }
         if self.cut_short {
             writeln!(f, "the streams did not end in time and were cut short")?;
         }

@@ -2,7 +2,7 @@
 
 use crate::{LaunchError, Options};
 use messages::Stage;
-use pipeline::configuration::{Configuration, Source};
+use pipeline::configuration::Configuration;
 use runtime::{Context, POISONED_EXIT_CODE, monotonic_ns};
 use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -13,6 +13,9 @@ pub struct Role {
     pub stage: Stage,
     pub area: Option<usize>,
 }
+
+/// The recorder.
+pub const RECORD: Role = Role { stage: Stage::Record, area: None };
 
 /// How the set is doing.
 pub enum Outcome {
@@ -58,11 +61,7 @@ struct Spawner {
 impl Set {
     /// A set of which nothing has been started; `restarts` carries the counts over from an earlier domain.
     pub fn new(configuration: &Configuration, options: &Options, context: Context, restarts: Vec<(Role, u64)>) -> Self {
-        let stage = match configuration.main.source {
-            Source::Simulator => Stage::Simulate,
-            Source::Csv(_) => Stage::Replay,
-            Source::Line(_) => Stage::Acquire,
-        };
+        let stage = configuration.main.source.stage();
         let areas = configuration.areas.iter().map(|area| area.name.clone()).collect();
         let mut set = Self {
             members: Vec::new(),
@@ -73,6 +72,8 @@ impl Set {
         if !configuration.outputs.is_empty() {
             roles.push(Role { stage: Stage::Output, area: None });
         }
+        // the readers of all first
+        roles.extend(configuration.record.iter().map(|_| RECORD));
         for area in 0..configuration.areas.len() {
             // readers before writers
             roles.extend(
@@ -123,12 +124,16 @@ impl Set {
 
     /// Tells the source to end its streams.
     pub fn stop_source(&mut self) {
-        let source = self.source;
-        for child in
-            self.members.iter().filter(|member| member.role == source).filter_map(|member| member.child.as_ref())
-        {
-            // SAFETY: the process has not been waited for, so the number is still its own.
-            unsafe { libc::kill(child.id() as libc::pid_t, libc::SIGTERM) };
+        self.ask_to_leave(self.source);
+    }
+
+    fn ask_to_leave(&mut self, role: Role) {
+        let members = self.members.iter_mut().filter(|member| member.role == role);
+        for child in members.filter_map(|member| member.child.as_mut()) {
+            if matches!(child.try_wait(), Ok(None)) {
+                // SAFETY: the process has not been waited for, so the number is still its own.
+                unsafe { libc::kill(child.id() as libc::pid_t, libc::SIGTERM) };
+            }
         }
     }
 
@@ -168,6 +173,8 @@ impl Set {
 
     /// Waits briefly for those who are about to leave, and ends the others.
     pub fn kill(&mut self) {
+        // a recording should not look as if there had been a crash
+        self.ask_to_leave(RECORD);
         let until_ns = monotonic_ns() + 1_000_000_000;
         for child in self.members.iter_mut().filter_map(|member| member.child.as_mut()) {
             while monotonic_ns() < until_ns && matches!(child.try_wait(), Ok(None)) {
@@ -229,6 +236,9 @@ impl Spawner {
         }
         if let Some(area) = role.area {
             command.args(["--area", &self.areas[area]]);
+        }
+        if let Some(folder) = self.options.record.iter().find(|_| role == RECORD) {
+            command.arg("--folder").arg(folder);
         }
         if let Some(duration_s) = self.options.duration_s {
             command.arg("--duration").arg(format!("{}ns", (duration_s * 1e9).round()));

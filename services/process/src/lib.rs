@@ -1,9 +1,13 @@
 //! `deckflex process`: the offline loop over a configuration, one thread, as fast as it goes.
 
+mod again;
+
+pub use again::Again;
+
 use estimation::synchronise::Counts;
 use indicatif::{ProgressBar, ProgressStyle};
 use messages::{Solution, Truth};
-use pipeline::configuration::Configuration;
+use pipeline::configuration::{Configuration, Source};
 use pipeline::offline::{self, Outcome, Sink};
 use pipeline::recording::RecordingError;
 use pipeline::solution_file::SolutionFile;
@@ -41,9 +45,13 @@ pub struct Report {
     pub elapsed: Duration,
     /// Solutions a second over all areas.
     pub rate: f64,
+    /// Of a recorded run that was gone through again: whether it gave what was recorded.
+    pub again: Option<Again>,
 }
 
 /// Runs the configuration and writes `solution_<area>.csv` and `summary.json` into the folder.
+///
+/// With the configuration of a recorded run, that run is gone through again as it was.
 ///
 /// # Errors
 /// A recording cannot be read or a file cannot be written.
@@ -55,14 +63,17 @@ pub fn run(configuration: &Configuration, out: &Path) -> Result<Report, ProcessE
     std::fs::create_dir_all(out).map_err(failed(out))?;
     let mut writer = Writer::create(configuration, out).map_err(failed(out))?;
     let start = Instant::now();
-    let outcome = offline::run(configuration, &mut writer)?;
+    let (outcome, again) = match &configuration.main.source {
+        Source::Mcap(run) if configuration.as_recorded => again::run(configuration, run, &mut writer)?,
+        _ => (offline::run(configuration, &mut writer)?, None),
+    };
     let elapsed = start.elapsed();
     writer.progress.finish_and_clear();
     let solutions = writer.areas.iter().map(|area| area.figures.summary().samples).sum::<u64>();
     let path = out.join("summary.json");
     let summary = writer.finish().map_err(failed(out))?;
     summary.write(&path).map_err(failed(&path))?;
-    Ok(Report { summary, outcome, elapsed, rate: solutions as f64 / elapsed.as_secs_f64() })
+    Ok(Report { summary, outcome, elapsed, rate: solutions as f64 / elapsed.as_secs_f64(), again })
 }
 
 /// Takes the loop's output to the files.
@@ -165,6 +176,7 @@ impl fmt::Display for Report {
         if self.outcome.unreadable_rows > 0 {
             writeln!(f, "{} rows of the recordings could not be read", self.outcome.unreadable_rows)?;
         }
+        self.again.iter().try_for_each(|again| write!(f, "{again}"))?;
         write!(f, "{:.2} s, {:.0} solutions a second", self.elapsed.as_secs_f64(), self.rate)
     }
 }

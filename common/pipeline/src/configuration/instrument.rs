@@ -3,6 +3,7 @@
 use super::line::{Line, SourceTable};
 use super::{quantity, table};
 use frames::{Case, Frame, Rot, Vec3};
+use messages::Stage;
 use nalgebra::Matrix3;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
@@ -14,6 +15,8 @@ use wire::Family;
 pub enum Source {
     /// A recording; the path is absolute.
     Csv(PathBuf),
+    /// A recorded run, which holds all units; the path is absolute.
+    Mcap(PathBuf),
     /// The simulator.
     Simulator,
     /// A device at the end of a wire.
@@ -25,8 +28,18 @@ impl Source {
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Csv(_) => "csv",
+            Self::Mcap(_) => "mcap",
             Self::Simulator => "simulator",
             Self::Line(line) => line.device.family().name(),
+        }
+    }
+
+    /// The stage that hands out its samples.
+    pub fn stage(&self) -> Stage {
+        match self {
+            Self::Simulator => Stage::Simulate,
+            Self::Csv(_) | Self::Mcap(_) => Stage::Replay,
+            Self::Line(_) => Stage::Acquire,
         }
     }
 
@@ -34,7 +47,7 @@ impl Source {
     pub fn line(&self) -> Option<&Line> {
         match self {
             Self::Line(line) => Some(line),
-            Self::Csv(_) | Self::Simulator => None,
+            Self::Csv(_) | Self::Mcap(_) | Self::Simulator => None,
         }
     }
 }
@@ -43,6 +56,7 @@ impl Source {
 #[serde(rename_all = "snake_case")]
 pub(super) enum Kind {
     Csv,
+    Mcap,
     Simulator,
     Kvh,
     Stdbin,
@@ -53,6 +67,7 @@ impl Kind {
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::Csv => "csv",
+            Self::Mcap => "mcap",
             Self::Simulator => "simulator",
             Self::Kvh => Family::Kvh.name(),
             Self::Stdbin => Family::Stdbin.name(),
@@ -65,11 +80,13 @@ impl Kind {
 pub(super) fn source<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Source, D::Error> {
     let table: SourceTable = table::one(deserializer)?;
     let (kind, name) = (table.kind, table.kind.name());
-    if let (Kind::Csv | Kind::Simulator, Some(key)) = (kind, table.line_key()) {
+    if let (Kind::Csv | Kind::Mcap | Kind::Simulator, Some(key)) = (kind, table.line_key()) {
         return Err(D::Error::custom(format!("a source of kind \"{name}\" has no `{key}`")));
     }
     match (kind, &table.path) {
         (Kind::Csv, Some(path)) => Ok(Source::Csv(path.clone())),
+        (Kind::Mcap, Some(path)) => Ok(Source::Mcap(path.clone())),
+        (Kind::Mcap, None) => Err(D::Error::custom("a source of kind \"mcap\" needs the key `path`")),
         (Kind::Csv, None) => Err(D::Error::custom("a source of kind \"csv\" needs the key `path`")),
         (_, Some(_)) => Err(D::Error::custom(format!("a source of kind \"{name}\" has no `path`"))),
         (Kind::Simulator, None) => Ok(Source::Simulator),

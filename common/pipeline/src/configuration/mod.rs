@@ -14,6 +14,7 @@ mod line;
 mod model_free;
 mod output;
 mod quantity;
+mod record;
 mod rules;
 mod scenario;
 mod simulation;
@@ -32,9 +33,11 @@ pub use instrument::{Accel, Gyro, Source};
 pub use line::Line;
 pub use model_free::{DelaySettings, NetworkInput, NetworkSettings};
 pub use output::{Destination, Output, Telegrams};
+pub use record::{RecordSettings, RecordTopic};
 pub use simulation::{Ins, Simulation, Wire};
 pub use wire::Port;
 
+use crate::recorded_run;
 use document::Document;
 use serde::{Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
@@ -46,6 +49,9 @@ pub struct Configuration {
     /// The file, as it was named.
     #[serde(skip)]
     pub path: PathBuf,
+    /// Whether it stands in the recorded run that is its source: the run is gone through again as it was.
+    #[serde(skip)]
+    pub as_recorded: bool,
     /// Samples a second of every unit.
     #[serde(deserialize_with = "quantity::rate_hz")]
     pub rate_hz: f64,
@@ -73,6 +79,9 @@ pub struct Configuration {
     /// Recordings are played back at so many times the recorded pace.
     #[serde(rename = "replay", default = "as_recorded", deserialize_with = "pace")]
     pub replay_pace: f64,
+    /// What is recorded of the run; `None` for nothing.
+    #[serde(default, deserialize_with = "table::optional")]
+    pub record: Option<RecordSettings>,
     /// What the simulator makes of the ship.
     #[serde(default, deserialize_with = "table::one")]
     pub simulation: Simulation,
@@ -87,15 +96,28 @@ fn two_minutes() -> f64 {
 }
 
 impl Configuration {
-    /// Reads and checks a configuration, and that its recordings exist.
+    /// Reads and checks a configuration, and that its recordings exist. That of a recorded run is read from the recording, which is
+    /// then the source of all its units.
     ///
     /// # Errors
     /// The file cannot be read or is not TOML; a key is unknown, missing, of the wrong type or out of its range; keys
     /// contradict each other; a recording cannot be found.
     pub fn read(path: &Path) -> Result<Self, ConfigurationError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|reason| ConfigurationError::Unreadable { path: path.to_path_buf(), reason })?;
-        Self::parse(path, &text)
+        let text = Self::text(path)?;
+        if recorded_run::is_one(path) { Self::assemble(path, &text, Some(path)) } else { Self::parse(path, &text) }
+    }
+
+    /// The text of a configuration, which a recorded run holds.
+    ///
+    /// # Errors
+    /// The file cannot be read.
+    pub fn text(path: &Path) -> Result<String, ConfigurationError> {
+        let unreadable = |reason| ConfigurationError::Unreadable { path: path.to_path_buf(), reason };
+        if recorded_run::is_one(path) {
+            let about = recorded_run::about(path).map_err(|error| unreadable(std::io::Error::other(error)))?;
+            return Ok(about.configuration);
+        }
+        std::fs::read_to_string(path).map_err(unreadable)
     }
 
     /// Checks the text of a configuration, and that its recordings exist; `path` is what errors name and where the paths of
@@ -104,11 +126,29 @@ impl Configuration {
     /// # Errors
     /// Those of [`Self::read`], but for the file itself.
     pub fn parse(path: &Path, text: &str) -> Result<Self, ConfigurationError> {
+        Self::assemble(path, text, None)
+    }
+
+    fn assemble(path: &Path, text: &str, recorded: Option<&Path>) -> Result<Self, ConfigurationError> {
         let document = Document::parse(path, text)?;
         let mut configuration: Self = toml::from_str(text).map_err(|error| document.explain(&error))?;
         configuration.path = path.to_path_buf();
+        if let Some(run) = recorded {
+            configuration.take_from(run);
+        }
         rules::apply(&mut configuration, &document)?;
         Ok(configuration)
+    }
+
+    /// Takes all units from a recorded run, to its end, and leaves out what acts on anything outside.
+    fn take_from(&mut self, run: &Path) {
+        let run = std::path::absolute(run).unwrap_or_else(|_| run.to_path_buf());
+        self.main.source = Source::Mcap(run.clone());
+        self.areas.iter_mut().for_each(|area| area.source = Source::Mcap(run.clone()));
+        self.as_recorded = true;
+        self.run.duration_s = None;
+        self.replay_pace = as_recorded();
+        self.record = None;
     }
 
     /// A copy with some values changed, which are not checked again.
@@ -116,6 +156,11 @@ impl Configuration {
         let mut configuration = self.clone();
         change(&mut configuration);
         configuration
+    }
+
+    /// Has the run recorded in a folder, whether the configuration speaks of it or not.
+    pub fn record_in(&mut self, folder: &Path) {
+        self.record.get_or_insert_with(|| RecordSettings::new(folder)).folder = folder.to_path_buf();
     }
 
     /// The nominal time from one sample to the next, ns.

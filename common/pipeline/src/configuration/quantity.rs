@@ -197,6 +197,11 @@ quantities! {
     wander_s: 1.0, 1.0, 1e6;
     wander_h: 3600.0, 0.01, 1000.0;
     clock_ppm: unit::PPM, -10_000.0, 10_000.0;
+
+    chunk_kib: 1024.0, 4.0, 1024.0;
+    flush_s: 1.0, 0.05, 1.0;
+    rotate_mb: 1e6, 1.0, 1e6;
+    budget_mb: 1e6, 2.0, 1e9;
 }
 
 /// The number of sinusoids that make a sea.

@@ -1,7 +1,9 @@
 //! Rules that more than one key takes part in.
 
 use super::document::Document;
-use super::{Area, Configuration, ConfigurationError, Port, RangeMethod, RegistrationMethod, Source, output};
+use super::{
+    Area, Configuration, ConfigurationError, Port, RangeMethod, RecordSettings, RegistrationMethod, Source, output,
+};
 use std::path::Path;
 
 /// Makes the paths of the recordings absolute and checks the whole; all faults are reported.
@@ -13,7 +15,13 @@ pub(super) fn apply(configuration: &mut Configuration, document: &Document) -> R
     for (i, area) in configuration.areas.iter_mut().enumerate() {
         faults.extend(locate(&mut area.source, folder, &format!("area[{i}]"), document));
     }
-    sources(configuration, document, &mut faults);
+    if !configuration.as_recorded {
+        sources(configuration, document, &mut faults);
+    }
+    if let Some(record) = &mut configuration.record {
+        record.folder = folder.join(&record.folder);
+        faults.extend(budget(record, document));
+    }
     names(&configuration.areas, document, &mut faults);
     times(configuration, document, &mut faults);
     methods(&configuration.areas, document, &mut faults);
@@ -28,7 +36,7 @@ pub(super) fn apply(configuration: &mut Configuration, document: &Document) -> R
 fn locate(source: &mut Source, folder: &Path, unit: &str, document: &Document) -> Option<ConfigurationError> {
     let (key, path) = match source {
         Source::Simulator => return None,
-        Source::Csv(path) => ("path", path),
+        Source::Csv(path) | Source::Mcap(path) => ("path", path),
         Source::Line(line) => {
             line.raw.iter_mut().for_each(|raw| *raw = folder.join(&*raw));
             let Port::File(path) = &mut line.port else { return None };
@@ -52,6 +60,9 @@ fn sources(configuration: &Configuration, document: &Document, faults: &mut Vec<
             let others = if main.line().is_some() { "devices on wires" } else { "of one kind" };
             let message = format!("all sources must be {others}, and [main] has \"{kind}\"");
             faults.push(document.fault(&format!("area[{i}].source.kind"), &message));
+        } else if kind == "mcap" && area.source != configuration.main.source {
+            let message = "all units must come of the same recorded run, and [main] names another file";
+            faults.push(document.fault(&format!("area[{i}].source.path"), message));
         }
     }
     let mut useless = |key: &str| {
@@ -60,7 +71,7 @@ fn sources(configuration: &Configuration, document: &Document, faults: &mut Vec<
         }
     };
     // what is simulated can also be put on the wires
-    if let Source::Csv(_) = main {
+    if let Source::Csv(_) | Source::Mcap(_) = main {
         useless("simulation");
         (0..configuration.areas.len()).for_each(|i| useless(&format!("area[{i}].simulation")));
     } else {
@@ -84,6 +95,11 @@ fn ports(configuration: &Configuration, document: &Document, faults: &mut Vec<Co
             faults.push(document.fault(&format!("area[{}].source", unit - 1), "another unit has the same port"));
         }
     }
+}
+
+fn budget(record: &RecordSettings, document: &Document) -> Option<ConfigurationError> {
+    let message = "must be at least twice record.rotate_mb, since the file that is being written is never removed";
+    record.budget.filter(|budget| *budget < 2.0 * record.rotate).map(|_| document.fault("record.budget_mb", message))
 }
 
 fn names(areas: &[Area], document: &Document, faults: &mut Vec<ConfigurationError>) {

@@ -40,6 +40,24 @@ pub enum RecordingError {
         /// Which columns are missing.
         reason: String,
     },
+    /// The file is no recorded run.
+    #[error("{}: not a recorded run: {reason}", path.display())]
+    NoRun {
+        /// The file.
+        path: PathBuf,
+        /// What it lacks.
+        reason: String,
+    },
+    /// The recorded run has no samples of a unit.
+    #[error("{}: the recorded run has no samples of {topic}; it has {known}", path.display())]
+    NoUnit {
+        /// The file.
+        path: PathBuf,
+        /// The topic that it lacks.
+        topic: String,
+        /// The topics of samples that it has.
+        known: String,
+    },
     /// There is a header, but no usable row.
     #[error("{}: no row can be used ({refused} refused)", path.display())]
     Empty {
