@@ -13,6 +13,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread::JoinHandle;
 
 /// What a reader tells.
+#[allow(clippy::large_enum_variant)] // a box would be an allocation for every piece
 pub enum News {
     Bytes(Piece),
     /// The port cannot be opened, or has broken off.

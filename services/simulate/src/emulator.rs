@@ -138,11 +138,11 @@ impl Emulator {
                 true_ns + ((self.options.latency_s + jitter_s) * 1e9).round() as i64
             };
             let now_ns = host_ns(epoch.main.header.time_ns);
-            for (unit, true_ns, bytes) in spoken(&mut self.voices, epoch, &host_ns) {
+            for (unit, true_ns, bytes) in spoken(&mut self.voices, epoch, host_ns) {
                 waiting.push(Reverse(Frame { due_ns: delayed(true_ns), unit, bytes }));
             }
             if let Some(files) = &mut self.files {
-                files.write(epoch, &host_ns)?;
+                files.write(epoch, host_ns)?;
             }
             // whatever comes later is due after this
             while let Some(Reverse(frame)) = waiting.peek()
