@@ -39,7 +39,7 @@ proptest! {
         comes_back!(&bytes, Parameters(FlexureParams));
         comes_back!(&bytes, Solution(Solution), reserved);
         comes_back!(&bytes, Truth(Truth), reserved);
-        comes_back!(&bytes, Health(Health), reserved);
+        comes_back!(&bytes, Health(Health));
         let adoption = Adoption { header: filled::<ImuSample>(&bytes).header, params_id: 3, area: 1, late: 1 };
         let record = Record::from(adoption);
         let again = Record::decode("deckflex.Adoption", &record.encode()).unwrap();
