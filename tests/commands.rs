@@ -154,8 +154,21 @@ fn help_names_every_command() {
     let output = deckflex(&place, &["--help"]);
     let said = String::from_utf8(output.stdout.clone()).unwrap();
     assert!(output.status.success());
-    for command in ["launch", "process", "check", "bound", "simulate", "replay", "synchronise", "estimate", "identify"]
-    {
+    let commands = [
+        "launch",
+        "process",
+        "check",
+        "bound",
+        "recover",
+        "export",
+        "simulate",
+        "replay",
+        "synchronise",
+        "estimate",
+        "identify",
+        "record",
+    ];
+    for command in commands {
         assert!(said.contains(&format!("\n  {command} ")), "{command}: {said}");
         let output = deckflex(&place, &[command, "--help"]);
         assert!(output.status.success() && !output.stdout.is_empty(), "{command}");
