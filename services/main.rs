@@ -83,6 +83,20 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
+    /// Tell the noise of a unit at rest by its Allan deviation, and the lines for the configuration
+    Allan {
+        /// A recording (CSV), or a configuration (.toml) whose units are recordings
+        file: PathBuf,
+        /// Unit of the configuration: main or the name of an area
+        #[arg(long)]
+        unit: Option<String>,
+        /// Draw the deviations against the averaging time
+        #[arg(long, value_name = "FILE")]
+        svg: Option<PathBuf>,
+        /// Write the numbers as JSON
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
     /// Stage: simulated units (started by launch)
     Simulate(StageArgs),
     /// Stage: recorded units (started by launch)
@@ -142,6 +156,7 @@ fn main() -> ExitCode {
             let plan = reproduce::Plan { trials, seed, quick };
             reproduce(&reproduce::Options { selection, plan, json, report, threads })
         }
+        Command::Allan { file, unit, svg, json } => allan(&allan::Options { file, unit, svg, json }),
         Command::Simulate(args) => stage(&args, simulate::run),
         Command::Replay(args) => stage(&args, replay::run),
         Command::Synchronise(args) => of_area(&args, synchronise::run),
@@ -161,6 +176,7 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
         || matches!(error.downcast_ref(), Some(bound::BoundError::Configuration(_)))
         || matches!(error.downcast_ref(), Some(process::ProcessError::Recording(_)))
         || matches!(error.downcast_ref(), Some(replay::ReplayError::Recording(_)))
+        || matches!(error.downcast_ref(), Some(error) if allan::AllanError::is_unusable(error))
         || error.is::<NoSuchArea>()
         || error.is::<Endless>();
     match (poisoned, unusable) {
@@ -230,6 +246,11 @@ fn bound(options: &bound::Options) -> Outcome {
 
 fn reproduce(options: &reproduce::Options) -> Outcome {
     print!("{}", reproduce::run(options)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn allan(options: &allan::Options) -> Outcome {
+    print!("{}", allan::run(options)?);
     Ok(ExitCode::SUCCESS)
 }
 
