@@ -97,6 +97,11 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         json: Option<PathBuf>,
     },
+    /// Look at what of this computer stands in the way of a live run, and say how to mend it; changes nothing
+    Doctor {
+        /// What this configuration needs is looked at too
+        configuration: Option<PathBuf>,
+    },
     /// Stage: simulated units (started by launch)
     Simulate(StageArgs),
     /// Stage: recorded units (started by launch)
@@ -157,6 +162,7 @@ fn main() -> ExitCode {
             reproduce(&reproduce::Options { selection, plan, json, report, threads })
         }
         Command::Allan { file, unit, svg, json } => allan(&allan::Options { file, unit, svg, json }),
+        Command::Doctor { configuration } => doctor(configuration.as_deref()),
         Command::Simulate(args) => stage(&args, simulate::run),
         Command::Replay(args) => stage(&args, replay::run),
         Command::Synchronise(args) => of_area(&args, synchronise::run),
@@ -252,6 +258,13 @@ fn reproduce(options: &reproduce::Options) -> Outcome {
 fn allan(options: &allan::Options) -> Outcome {
     print!("{}", allan::run(options)?);
     Ok(ExitCode::SUCCESS)
+}
+
+/// Success also with warnings: a live run works then.
+fn doctor(configuration: Option<&std::path::Path>) -> Outcome {
+    let report = doctor::run(&doctor::Host::this(), configuration)?;
+    print!("{report}");
+    Ok(if report.worst() == doctor::Grade::Bad { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
 fn stage<E: Into<Box<dyn Error>>>(
