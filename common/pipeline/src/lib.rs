@@ -1,6 +1,7 @@
 //! Configuration, data sources, the offline loop and what it writes.
 
 pub mod configuration;
+pub mod deformation_file;
 pub mod lane;
 pub mod offline;
 pub mod recording;

@@ -66,7 +66,8 @@ pub fn head(path: &Path, rows: usize, rate_hz: f64) -> Result<Head, RecordingErr
         rows: look.counts.rows,
         refused: look.counts.refused,
         rate_hz: if median_ns > 0 { 1.0 / unit::seconds(median_ns) } else { f64::NAN },
-        gaps: steps.iter().filter(|&&step| step > median_ns.saturating_add(median_ns / 2) && median_ns > 0).count() as u64,
+        gaps: steps.iter().filter(|&&step| step > median_ns.saturating_add(median_ns / 2) && median_ns > 0).count()
+            as u64,
         repeated: steps.iter().filter(|&&step| step == 0).count() as u64,
         back: steps.iter().filter(|&&step| step < 0).count() as u64,
         not_finite: look.counts.not_finite,
