@@ -108,6 +108,44 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
     },
+    /// Tell the noise of a unit at rest by its Allan deviation, and the lines for the configuration
+    Allan {
+        /// A recording (CSV), or a configuration (.toml) whose units are recordings
+        file: PathBuf,
+        /// Unit of the configuration: main or the name of an area
+        #[arg(long)]
+        unit: Option<String>,
+        /// Draw the deviations against the averaging time
+        #[arg(long, value_name = "FILE")]
+        svg: Option<PathBuf>,
+        /// Write the numbers as JSON
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
+    /// Tell how far a solution lies from a reference unit's or from the truth, without their fixed deviation
+    Compare {
+        /// A solution file
+        solution: PathBuf,
+        /// A reference unit's solution file, or any file with t_s and q_w, q_x, q_y, q_z or phi_x_arcsec, phi_y_arcsec, phi_z_arcsec
+        reference: PathBuf,
+        /// The static stretch that gives the fixed deviation, such as 10s..1min after the first common instant; without it all of it
+        #[arg(long = "static", value_name = "FROM..TO", value_parser = stretch)]
+        still: Option<[f64; 2]>,
+        /// Leave the fixed deviation in
+        #[arg(long, conflicts_with = "still")]
+        keep_fixed: bool,
+        /// Compare only from so long after the first common instant
+        #[arg(long, value_name = "TIME", default_value = "0s", value_parser = humantime::parse_duration)]
+        from: Duration,
+        /// Write the numbers as JSON
+        #[arg(long, value_name = "FILE")]
+        json: Option<PathBuf>,
+    },
+    /// Look at what of this computer stands in the way of a live run, and say how to mend it; changes nothing
+    Doctor {
+        /// What this configuration needs is looked at too
+        configuration: Option<PathBuf>,
+    },
     /// Stage: recorded units (started by launch)
     Replay(StageArgs),
     /// Stage: one area's samples onto the main unit's instants (started by launch)
@@ -229,6 +267,12 @@ fn main() -> ExitCode {
         Command::Acquire(args) => stage(&args, acquire::run),
         Command::Recover { recording, out } => recover(&recording, out.as_deref()),
         Command::Export { recording, out } => export(&recording, &out),
+        Command::Allan { file, unit, svg, json } => allan(&allan::Options { file, unit, svg, json }),
+        Command::Compare { solution, reference, still, keep_fixed, from, json } => {
+            let from = from.as_secs_f64();
+            compare(&compare::Options { solution, reference, still, keep_fixed, from, json })
+        }
+        Command::Doctor { configuration } => doctor(configuration.as_deref()),
         Command::Replay(args) => stage(&args, replay::run),
         Command::Synchronise(args) => of_area(&args, synchronise::run),
         Command::Estimate(args) => of_area(&args, estimate::run),
@@ -260,6 +304,8 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
         || error.is::<recover::RecoverError>()
         || error.is::<export::ExportError>()
         || error.is::<NoFolder>()
+        || matches!(error.downcast_ref(), Some(error) if allan::AllanError::is_unusable(error))
+        || matches!(error.downcast_ref(), Some(error) if compare::CompareError::is_unusable(error))
         || error.is::<NoSuchArea>()
         || error.is::<Endless>();
     match (poisoned, unusable) {
@@ -359,6 +405,31 @@ fn record(args: &RecordArgs) -> Outcome {
             let _ = writeln!(std::io::stderr(), "deckflex record: {line}");
         })
     })
+}
+
+fn allan(options: &allan::Options) -> Outcome {
+    print!("{}", allan::run(options)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn compare(options: &compare::Options) -> Outcome {
+    print!("{}", compare::run(options)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Success also with warnings: a live run works then.
+fn doctor(configuration: Option<&std::path::Path>) -> Outcome {
+    let report = doctor::run(&doctor::Host::this(), configuration)?;
+    print!("{report}");
+    Ok(if report.worst() == doctor::Grade::Bad { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// Two times with two dots between them, s.
+fn stretch(text: &str) -> Result<[f64; 2], String> {
+    let (from, to) = text.split_once("..").ok_or("must be two times such as 10s..1min")?;
+    let seconds = |text: &str| humantime::parse_duration(text).map(|d| d.as_secs_f64()).map_err(|e| e.to_string());
+    let [from, to] = [seconds(from)?, seconds(to)?];
+    if from < to { Ok([from, to]) } else { Err("must begin before it ends".to_owned()) }
 }
 
 fn stage<E: Into<Box<dyn Error>>>(

@@ -167,7 +167,7 @@ fn the_experiments_stand_apart_from_the_stages() {
     let workspace = Workspace::read();
     assert_eq!(workspace.importers("deckflex-experiments"), ["deckflex-reproduce"]);
     assert_eq!(workspace.importers("rayon"), ["deckflex-experiments", "deckflex-reproduce"]);
-    assert_eq!(workspace.importers("plotters"), ["deckflex-bound", "deckflex-reproduce"]);
+    assert_eq!(workspace.importers("plotters"), ["deckflex-allan", "deckflex-bound", "deckflex-reproduce"]);
     for library in ["maud", "comfy-table"] {
         assert_eq!(workspace.importers(library), ["deckflex-reproduce"]);
     }

@@ -4,6 +4,7 @@
 //! [`Identifier`] learns the flexure model from pairs and solutions at its own slow rate.
 
 pub mod align;
+pub mod allan;
 pub mod estimator;
 pub mod evaluate;
 pub mod filter;

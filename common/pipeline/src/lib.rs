@@ -2,6 +2,7 @@
 
 pub mod alarm;
 pub mod configuration;
+pub mod deformation_file;
 pub mod lane;
 pub mod offline;
 pub mod recorded_run;

@@ -6,7 +6,10 @@
 //! | covariance of flexure rate and static part, with a coefficient (004) | [`ErrorRange`] |
 //! | assumed coherence of flexure and ship, unit-consistent | [`Coherence`] |
 //! | the coherence that the data show | [`Observed`] |
+//!
+//! And how far it was off, where a reference is known: [`against`].
 
+pub mod against;
 mod coherence;
 mod error_range;
 mod observed;

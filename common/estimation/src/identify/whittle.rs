@@ -64,6 +64,10 @@ const SECOND_STARTS: [f64; 5] = [0.1, 0.3, 0.8, 2.0, 4.0];
 /// Twice the logarithm of a ratio of posterior densities that leaves no doubt of a second mode: of hundreds of windows, each has some chance to mislead.
 const SECOND_DECISIVE: f64 = 30.0;
 
+/// A second mode is looked for, which takes longer than all the rest, where the power over octaves is off the model by so much: the sum of the squares of
+/// some ten normal variables. Where there is a second mode the sum goes into hundreds.
+const WORTH_A_LOOK: f64 = 20.0;
+
 /// The logarithms of damping, natural frequency and density of each mode, and of the noise.
 type Logs<const N: usize> = SVector<f64, N>;
 
@@ -79,6 +83,9 @@ pub fn identify(series: &Series, settings: &Settings) -> Option<Identified> {
 pub fn identify_two(series: &Series) -> Option<[Identified; 2]> {
     let fit = Fit::new(series, &Settings::of(series))?;
     let (one, cost) = fit.best()?;
+    if fit.misfit(&one) < WORTH_A_LOOK {
+        return None;
+    }
     let (two, least) = fit.second(&one)?;
     if 2.0 * (cost - least) < SECOND_DECISIVE {
         return None;
@@ -191,6 +198,23 @@ impl Fit {
         };
         let found = SECOND_STARTS.into_iter().filter_map(|b| self.climb(start(b)));
         found.min_by(|one, other| one.1.total_cmp(&other.1))
+    }
+
+    /// How far the power in each octave is off a model, in terms of its scatter: the sum of the squares.
+    fn misfit<const N: usize>(&self, logs: &Logs<N>) -> f64 {
+        let noise = self.noise(logs);
+        let modes: Vec<Flexure> = modes(logs).collect();
+        let (mut sum, mut excess, mut count, mut end) = (0.0, 0.0, 0.0, 0.0);
+        for (w, gain, power) in self.lines() {
+            if w > end {
+                sum += if count > 0.0 { self.data.weight * excess * excess / count } else { 0.0 };
+                (excess, count, end) = (0.0, 0.0, 2.0 * w);
+            }
+            let level = modes.iter().map(|mode| density(mode, gain, self.step_s, w).0).sum::<f64>() + noise;
+            excess += power / level - 1.0;
+            count += 1.0;
+        }
+        sum + if count > 0.0 { self.data.weight * excess * excess / count } else { 0.0 }
     }
 
     /// The modes with what is known of them.

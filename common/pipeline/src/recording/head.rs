@@ -54,7 +54,7 @@ pub fn head(path: &Path, rows: usize, rate_hz: f64) -> Result<Head, RecordingErr
     if look.times_ns.is_empty() {
         return Err(RecordingError::Empty { path: path.to_path_buf(), refused: look.counts.refused });
     }
-    let steps: Vec<i64> = look.times_ns.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let steps: Vec<i64> = look.times_ns.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).collect();
     let median_ns = median(steps.iter().copied().filter(|&step| step > 0).collect()).unwrap_or(0);
     let interval = if median_ns > 0 { unit::seconds(median_ns) } else { 1.0 / rate_hz };
     // means are divided by 1, increments by the interval that the file really has
@@ -66,7 +66,8 @@ pub fn head(path: &Path, rows: usize, rate_hz: f64) -> Result<Head, RecordingErr
         rows: look.counts.rows,
         refused: look.counts.refused,
         rate_hz: if median_ns > 0 { 1.0 / unit::seconds(median_ns) } else { f64::NAN },
-        gaps: steps.iter().filter(|&&step| 2 * step > 3 * median_ns && median_ns > 0).count() as u64,
+        gaps: steps.iter().filter(|&&step| step > median_ns.saturating_add(median_ns / 2) && median_ns > 0).count()
+            as u64,
         repeated: steps.iter().filter(|&&step| step == 0).count() as u64,
         back: steps.iter().filter(|&&step| step < 0).count() as u64,
         not_finite: look.counts.not_finite,

@@ -12,8 +12,10 @@
 mod columns;
 mod head;
 mod rows;
+mod series;
 
 pub use head::{Head, head};
+pub use series::{Series, series};
 
 use columns::Cells;
 use frames::unit;
@@ -149,14 +151,14 @@ impl Recording {
 
     /// The time since the row before where that is plausible, or else the nominal interval.
     fn interval(&mut self, time_ns: i64) -> (i64, Flags) {
-        let step = self.previous_ns.replace(time_ns).map(|previous| time_ns - previous);
+        let step = self.previous_ns.replace(time_ns).map(|previous| time_ns.saturating_sub(previous));
         match step {
             Some(0) => self.counts.repeated += 1,
             Some(step) if step < 0 => {
                 self.counts.back += 1;
                 return (self.nominal_ns, Flags::TIME_BACK);
             }
-            Some(step) if 2 * step <= 3 * self.nominal_ns => return (step, Flags::empty()),
+            Some(step) if step <= self.nominal_ns + self.nominal_ns / 2 => return (step, Flags::empty()),
             _ => {}
         }
         (self.nominal_ns, Flags::empty())
