@@ -107,7 +107,7 @@ fn model(area: &AreaState) -> Text<'static> {
             lines.extend(of_model(parameters));
             lines[0] = Line::from(format!("model {}, next {}", last.params_id, parameters.id));
         }
-        _ => lines.push(Line::from("the first guess, none is learnt yet")),
+        _ => lines.push(Line::from("first guess, none learnt yet")),
     }
     if let Some(last) = area.last.filter(|last| last.delay_sigma > 0.0) {
         lines.push(Line::from(format!("delay {:+.2} ±{:.2} ms", last.delay / 1e-3, 1.96 * last.delay_sigma / 1e-3)));

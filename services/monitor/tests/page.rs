@@ -44,7 +44,7 @@ fn page() -> Page {
     let parameters = FlexureParams {
         header,
         id: 500,
-        b: [0.628; 3],
+        b: [std::f64::consts::TAU / 10.0; 3],
         mu: [0.1; 3],
         sigma: [2.0 * ARCMIN; 3],
         ..FlexureParams::default()
@@ -114,7 +114,7 @@ fn trouble_is_told_in_words() {
         "The area's unit gives no data",
         "The output is a prediction",
         "simulate has been silent for 5 s",
-        "the first guess, none is learnt yet",
+        "first guess, none learnt yet",
         "delay: not estimated",
     ] {
         assert!(text.contains(words), "no {words:?}:\n{text}");
