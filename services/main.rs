@@ -146,6 +146,14 @@ enum Command {
         /// What this configuration needs is looked at too
         configuration: Option<PathBuf>,
     },
+    /// Look at a running launch, from another terminal
+    Monitor {
+        /// The configuration whose launch is meant; without it the one that runs
+        configuration: Option<PathBuf>,
+        /// Where events go that are marked with the key e
+        #[arg(long, value_name = "FILE", default_value = "events.csv")]
+        events: PathBuf,
+    },
     /// Stage: recorded units (started by launch)
     Replay(StageArgs),
     /// Stage: one area's samples onto the main unit's instants (started by launch)
@@ -273,6 +281,7 @@ fn main() -> ExitCode {
             compare(&compare::Options { solution, reference, still, keep_fixed, from, json })
         }
         Command::Doctor { configuration } => doctor(configuration.as_deref()),
+        Command::Monitor { configuration, events } => monitor(&monitor::Options { configuration, events }),
         Command::Replay(args) => stage(&args, replay::run),
         Command::Synchronise(args) => of_area(&args, synchronise::run),
         Command::Estimate(args) => of_area(&args, estimate::run),
@@ -306,6 +315,7 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
         || error.is::<NoFolder>()
         || matches!(error.downcast_ref(), Some(error) if allan::AllanError::is_unusable(error))
         || matches!(error.downcast_ref(), Some(error) if compare::CompareError::is_unusable(error))
+        || matches!(error.downcast_ref(), Some(monitor::MonitorError::Configuration(_)))
         || error.is::<NoSuchArea>()
         || error.is::<Endless>();
     match (poisoned, unusable) {
@@ -422,6 +432,11 @@ fn doctor(configuration: Option<&std::path::Path>) -> Outcome {
     let report = doctor::run(&doctor::Host::this(), configuration)?;
     print!("{report}");
     Ok(if report.worst() == doctor::Grade::Bad { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+fn monitor(options: &monitor::Options) -> Outcome {
+    monitor::run(options)?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Two times with two dots between them, s.

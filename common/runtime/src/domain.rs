@@ -28,6 +28,15 @@ pub struct Domain {
     owned: bool,
 }
 
+/// A domain in use.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Running {
+    /// Its root.
+    pub root: PathBuf,
+    /// The launcher's process.
+    pub pid: u32,
+}
+
 impl Domain {
     /// Makes a new domain that belongs to this process.
     ///
@@ -143,6 +152,21 @@ impl Domain {
             removed.push(root);
         }
         Ok(removed)
+    }
+
+    /// The domains of this user whose launchers run now.
+    ///
+    /// # Errors
+    /// If the folder of domains cannot be read.
+    pub fn running() -> Result<Vec<Running>, TransportError> {
+        let base = base()?;
+        let entries = fs::read_dir(&base).map_err(TransportError::file("read", &base))?.flatten();
+        let running = |root: PathBuf| {
+            name_of(&root)?;
+            let owner = owner_of(&root).filter(|owner| owner.lives())?;
+            Some(Running { root, pid: owner.pid })
+        };
+        Ok(entries.filter_map(|entry| running(entry.path())).collect())
     }
 
     fn shared_memory(&self) -> Vec<PathBuf> {

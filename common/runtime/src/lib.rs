@@ -43,7 +43,7 @@ mod wire;
 
 pub use clock::{Pacer, monotonic_ns, sleep_until};
 pub use context::Context;
-pub use domain::Domain;
+pub use domain::{Domain, Running};
 pub use error::{POISONED_EXIT_CODE, TransportError};
 pub use feed::{Delivery, Feed};
 pub use gap::Sequence;

@@ -64,7 +64,7 @@ fn recording(options: &Options) -> Result<PathBuf, AllanError> {
     let units: Vec<(&str, &Source)> = std::iter::once(("main", &configuration.main.source)).chain(areas).collect();
     let recorded = units.iter().filter_map(|(name, source)| match source {
         Source::Csv(path) => Some((*name, path)),
-        Source::Simulator => None,
+        Source::Simulator | Source::Mcap(_) | Source::Line(_) => None,
     });
     match recorded.clone().find(|(name, _)| *name == unit) {
         Some((_, path)) => Ok(path.clone()),
