@@ -131,7 +131,13 @@ impl Drop for Owned {
 /// The demonstration as processes; its rows and the class that all fast stages obtained.
 fn process_set(folder: &Path, class: &str, length_s: f64) -> Outcome<(Vec<Row>, String)> {
     let demo = Path::new(env!("CARGO_MANIFEST_DIR")).join("config/demo.toml");
-    let text = fs::read_to_string(demo)?.replacen("[run]", &format!("[run]\nscheduling = \"{class}\""), 1);
+    // so3 has its first solution within seconds, the default only after the registration
+    let so3 = "[area.estimator]\nmatching = \"so3\"\n\n[area.identifier]";
+    let text = fs::read_to_string(demo)?.replacen("[run]", &format!("[run]\nscheduling = \"{class}\""), 1).replacen(
+        "[area.identifier]",
+        so3,
+        1,
+    );
     let [configuration, json, errors] = ["bench.toml", "report.json", "errors.txt"].map(|name| folder.join(name));
     fs::write(&configuration, text)?;
     let mut command = Command::new(env!("CARGO_BIN_EXE_deckflex"));

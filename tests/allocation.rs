@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use messages::Flags;
-use pipeline::configuration::Configuration;
+use pipeline::configuration::{Configuration, MatchingMethod};
 use pipeline::lane;
 use pipeline::source::{Batch, Source};
 use simulation::Simulator;
@@ -65,6 +65,8 @@ fn demo(seed: u64) -> Configuration {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("config/demo.toml");
     let mut configuration = Configuration::read(&path).unwrap();
     configuration.run.seed = seed;
+    // the default makes room for another filter whenever it runs over the first minutes again
+    configuration.areas[0].estimator.matching = MatchingMethod::So3;
     configuration
 }
 

@@ -52,11 +52,24 @@ fn simulated_units_give_the_same_live_and_offline() {
     assert_same(&place, &place.write("demo.toml", &demo(1, 2.0)), "12s");
 }
 
+/// The default estimator, which runs over the first minutes again whenever parameters come.
+#[test]
+fn the_default_estimator_gives_the_same_live_and_offline() {
+    let place = Place::new();
+    let early = "[area.estimator]\nregistration_s = 6\n\n[area.identifier]";
+    let text = shipped("demo.toml").replacen("[area.identifier]", early, 1);
+    let rvm = "300\nmethod = \"rvm\"";
+    let text = changed(&text, &[("window_s", rvm), ("minimum_s", "3"), ("period_s", "2"), ("lead_s", "2")]);
+    assert_same(&place, &place.write("demo.toml", &text), "14s");
+}
+
 /// One of the units has a clock of its own, and its samples are lost, repeated and swapped.
 #[test]
 fn two_areas_give_the_same_live_and_offline() {
     let place = Place::new();
-    let text = shipped("two_areas.toml").replace("minimum_s = 8", "minimum_s = 3\nperiod_s = 2\nlead_s = 2");
+    let quick = "\n[area.estimator]\nmatching = \"so3\"\n\n[area.identifier]\nmethod = \"rvm\"\nminimum_s = 3\nperiod_s = 2\nlead_s = 2\n\n\
+                 [area.simulation]\n";
+    let text = shipped("two_areas.toml").replace("\n[area.simulation]\n", quick);
     assert_same(&place, &place.write("two_areas.toml", &changed(&text, &[("seed", "2")])), "12s");
 }
 

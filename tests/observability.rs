@@ -13,7 +13,7 @@ fn configuration(ship: &str, area: &str, simulation: &str, seed: u64, duration_s
     let text = format!(
         "rate_hz = 100\n[main]\nsource = {{ kind = \"simulator\" }}\n{gyro}\n[simulation]\n{ship}\n[run]\nseed = {seed}\n\
          duration_s = {duration_s}\n[[area]]\nname = \"radar\"\nsource = {{ kind = \"simulator\" }}\n{gyro}\n{area}\n\
-         [area.simulation]\n{simulation}\n"
+         [area.estimator]\nmatching = \"so3\"\n[area.identifier]\nmethod = \"rvm\"\nwindow_s = 300\nminimum_s = 10\n[area.simulation]\n{simulation}\n"
     );
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("test.toml");

@@ -7,7 +7,7 @@
 mod common;
 
 use common::launch::{Launch, of_stage, one_at_a_time, send};
-use common::{Place, changed, shipped};
+use common::{Place, quick, shipped};
 use estimation::Estimator;
 use estimation::synchronise::Synchroniser;
 use frames::{Main, Nav, Rot, Sub, Vec3, unit};
@@ -51,7 +51,7 @@ fn wires(place: &Place, keys: [&str; 2]) -> String {
     let text = shipped("wires.toml")
         .replace("127.0.0.1:5001\"", &format!("127.0.0.1:{}\"{}", free_port(), keys[0]))
         .replace("/tmp/deckflex_radar\"", &format!("{}\"{}", terminal.display(), keys[1]));
-    changed(&text, &[("minimum_s", "3"), ("period_s", "2")])
+    quick(&text)
 }
 
 /// Column `name` of the rows of a CSV text.
@@ -194,7 +194,8 @@ fn solutions(configuration: &Configuration, reset: bool) -> Vec<Solution> {
 fn a_heading_reset_of_the_main_ins_steps_the_deck_only() {
     for matching in ["so3", "deck", "rodrigues"] {
         let place = Place::new();
-        let text = changed(&shipped("demo.toml"), &[("matching", &format!("\"{matching}\""))]);
+        let estimator = format!("[area.estimator]\nmatching = \"{matching}\"\n\n[area.identifier]");
+        let text = shipped("demo.toml").replacen("[area.identifier]", &estimator, 1);
         let path: PathBuf = place.write("demo.toml", &text);
         let configuration = common::configuration(&path, 40.0);
         let (plain, reset) = (solutions(&configuration, false), solutions(&configuration, true));

@@ -149,6 +149,7 @@ impl Configuration {
         self.run.duration_s = None;
         self.replay_pace = as_recorded();
         self.record = None;
+        self.outputs.clear();
     }
 
     /// A copy with some values changed, which are not checked again.

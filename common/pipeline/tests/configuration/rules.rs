@@ -56,7 +56,7 @@ fn the_fixed_model_and_its_figures_belong_together() {
     let flexure = "flexure = { mu_per_s = [1, 1, 1], b_rad_per_s = [1, 1, 1], sigma_arcsec = [1, 1, 1] }";
     assert_eq!(
         message_with(&format!("[area.identifier]\n{flexure}")),
-        "ship.toml:9: area[0].identifier: the key `flexure` goes with method \"fixed\" only, not with \"rvm\""
+        "ship.toml:9: area[0].identifier: the key `flexure` goes with method \"fixed\" only, not with \"whittle\""
     );
     assert_eq!(
         message_with("[area.simulation]\nflexure = { tau_s = [1, 1, 1], mu_per_s = [1, 1, 1] }"),

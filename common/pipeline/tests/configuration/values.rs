@@ -28,7 +28,7 @@ fn everything_but_the_required_keys_has_a_default() {
     assert_eq!((filter_hz, registration_s), (10.0, 20.0));
     assert!(close(static_rate_noise, 1e-4 * ARCSEC * ARCSEC));
     let i = area.identifier;
-    assert_eq!((i.window_s, i.period_s, i.lead_s, i.minimum_s, i.dictionary), (300.0, 10.0, 1.0, 10.0, 1));
+    assert_eq!((i.window_s, i.period_s, i.lead_s, i.minimum_s, i.dictionary), (600.0, 10.0, 1.0, 30.0, 1));
     assert_eq!((i.method, i.safety), (IdentifierMethod::Learnt(Method::Rvm), true));
 }
 
@@ -120,7 +120,7 @@ fn the_simulator_gets_the_true_figures() {
 fn the_configurations_of_the_project_are_sound() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config");
     let demo = Configuration::read(&folder.join("demo.toml")).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!((demo.areas[0].name.as_str(), demo.settle_s, demo.areas[0].identifier.minimum_s), ("radar", 30.0, 8.0));
+    assert_eq!((demo.areas[0].name.as_str(), demo.settle_s, demo.areas[0].identifier.minimum_s), ("radar", 30.0, 30.0));
     let paper = simulation::Scenario::default();
     let scenario = demo.scenario(1);
     assert_eq!((scenario.ship, scenario.main), (paper.ship, paper.main));
