@@ -38,7 +38,7 @@ enum Command {
         /// Write the health of all stages for Prometheus's node exporter, every five seconds
         #[arg(long, value_name = "FILE")]
         prometheus: Option<PathBuf>,
-        /// Record everything there, whatever folder [record] names
+        /// Record everything there, whatever folder the table `record` names
         #[arg(long, value_name = "DIR")]
         record: Option<PathBuf>,
     },
@@ -172,7 +172,7 @@ enum Command {
 struct RecordArgs {
     #[command(flatten)]
     stage: StageArgs,
-    /// Where to record, whatever folder [record] names
+    /// Where to record, whatever folder the table `record` names
     #[arg(long, value_name = "DIR")]
     folder: Option<PathBuf>,
 }
