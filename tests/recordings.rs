@@ -81,7 +81,9 @@ fn again(place: &Place, file: &Path, name: &str) -> (String, String) {
 #[test]
 fn a_recorded_run_gives_its_solutions_again() {
     let place = Place::new();
-    let (path, folder) = recording(&place, "late", &demo(31, 0.01), "flush_s = 0.2");
+    let output =
+        "[[output]]\narea = \"radar\"\nto = { kind = \"udp\", address = \"127.0.0.1:9\" }\nsentences = [\"HDT\"]";
+    let (path, folder) = recording(&place, "late", &demo(31, 0.01), &format!("flush_s = 0.2\n{output}"));
     let live = {
         let _alone = one_at_a_time();
         Launch::start(&place, "live", &path, Some("9s")).end()
@@ -90,6 +92,8 @@ fn a_recorded_run_gives_its_solutions_again() {
     assert!(report["late_parameters"].as_u64().unwrap() > 0, "nothing came late");
     assert_ne!(live.solutions("radar"), offline(&configuration(&path, 9.0)).0, "a new run would have given the same");
     let [file] = &files(&folder)[..] else { panic!("one file") };
+    let outputs = |path: &Path| Configuration::read(path).unwrap().outputs.len();
+    assert_eq!((outputs(&path), outputs(file)), (1, 0), "what was recorded is not told to the radar again");
     let (solutions, said) = again(&place, file, "again");
     assert_eq!(first_difference(&live.solutions("radar"), &solutions), None, "{said}");
     assert!(said.contains("901 solutions are the recorded ones to the bit\n"), "{said}");
