@@ -144,7 +144,7 @@ fn a_stream_of_another_device_is_refused_in_words() {
     let _alone = one_at_a_time();
     let _emulator = Emulator::start(&place, &configuration, &[]);
     let ended = Launch::start(&place, "out", &wrong, Some("30s")).end();
-    assert_eq!(ended.status.code(), Some(1), "{}", ended.errors);
+    assert_eq!(ended.status.code(), Some(2), "{}", ended.errors);
     let words = "the configuration says \"kvh\", but the stream looks like iXblue STDBIN (\"stdbin\")";
     assert!(ended.errors.contains(words) && ended.errors.contains("main, udp 127.0.0.1:"), "{}", ended.errors);
     ended.assert_nothing_left();

@@ -46,7 +46,8 @@ fn a_track_has_the_bits_of_the_offline_loop() {
         let track = run(&configuration, &data, 0.0);
         assert!(track.points == reference.points, "seed {seed}");
         let adopted: Vec<FlexureParams> = track.adopted.iter().map(|adoption| adoption.set).collect();
-        assert!(adopted.len() >= 4 && adopted == reference.sets[..adopted.len()], "seed {seed}");
+        // at 30, 40 and 50 s
+        assert!(adopted.len() >= 3 && adopted == reference.sets[..adopted.len()], "seed {seed}");
         let waits = track.adopted.iter().map(|a| a.time_s - seconds(a.set.effective_from_ns));
         assert!(waits.into_iter().all(|wait| (0.0..0.011).contains(&wait)), "seed {seed}");
     }

@@ -102,8 +102,8 @@ fn without_sway_the_bound_rests_on_the_survey_and_says_so() {
     let nothing = area(&text, 60.0);
     assert!(nothing.curve.is_empty() && nothing.is_unobservable);
     assert_eq!(nothing.hardly_shown(), ['x', 'y', 'z']);
-    let survey = "[area.installation]\nrotation_vector_deg = [0.167, 0.167, 0.5]\nsigma_deg = 0.3\n\n[area.estimator]";
-    let report = run(&text.replace("[area.estimator]", survey), 60.0);
+    let survey = "[area.installation]\nrotation_vector_deg = [0.167, 0.167, 0.5]\nsigma_deg = 0.3\n\n[area.identifier]";
+    let report = run(&text.replacen("[area.identifier]", survey, 1), 60.0);
     let surveyed = &report.areas[0];
     // gravity shows the level to accelerometers at rest; the heading has the earth's rate alone
     assert!(surveyed.is_unobservable, "{report}");

@@ -29,7 +29,7 @@ fn everything_but_the_required_keys_has_a_default() {
     assert!(close(static_rate_noise, 1e-4 * ARCSEC * ARCSEC));
     let i = area.identifier;
     assert_eq!((i.window_s, i.period_s, i.lead_s, i.minimum_s, i.dictionary), (600.0, 10.0, 1.0, 30.0, 1));
-    assert_eq!((i.method, i.safety), (IdentifierMethod::Learnt(Method::Rvm), true));
+    assert_eq!((i.method, i.safety), (IdentifierMethod::Learnt(Method::Whittle), true));
 }
 
 #[test]
