@@ -8,7 +8,7 @@ use estimation::align::least_squares::LeastSquares;
 use estimation::align::quaternion::Angles;
 use estimation::align::{self, DelayRegistrar, Registrar};
 use estimation::estimator::{self, DeckEstimator, DeckSettings, MakeRegister, Matched, MatchedSettings};
-use estimation::evaluate::{Coherence, Deviations, ErrorRange, Evaluate, Observed};
+use estimation::evaluate::{Coherence, Deviations, ErrorRange, Evaluate, NORMAL_95, Observed};
 use estimation::filter::Filter;
 use estimation::filter::correntropy::Kernel;
 use estimation::filter::predictive::Weight;
@@ -176,7 +176,7 @@ fn matched<M: Model<N, K> + 'static, const N: usize, const K: usize>(
 fn evaluation(configuration: &Configuration, area: usize) -> Box<dyn Evaluate> {
     let told = &configuration.areas[area].estimator;
     match told.range() {
-        RangeMethod::Normal => Box::new(Deviations(1.96)),
+        RangeMethod::Normal => Box::new(Deviations(NORMAL_95)),
         RangeMethod::Naive => Box::new(Deviations(3.0)),
         RangeMethod::ErrorRange => Box::new(ErrorRange::new(told.range_factor)),
         RangeMethod::Coherence => Box::new(Coherence::new(told.range_factor)),

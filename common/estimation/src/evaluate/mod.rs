@@ -22,6 +22,9 @@ pub use observed::Observed;
 use frames::{Main, Vec3};
 use nalgebra::{Matrix3, Vector3};
 
+/// Deviations that hold 95 % of a normal error.
+pub const NORMAL_95: f64 = 1.96;
+
 /// What a range is made of, at one instant.
 #[derive(Clone, Copy, Debug)]
 pub struct Evidence {
@@ -54,7 +57,7 @@ pub trait Evaluate: Send {
     }
 }
 
-/// So many standard deviations of the total: 1.96 for 95 % of a normal error, 3 for the naive range of paper 004.
+/// So many standard deviations of the total: [`NORMAL_95`], or 3 for the naive range of paper 004.
 #[derive(Clone, Copy, Debug)]
 pub struct Deviations(pub f64);
 

@@ -11,11 +11,9 @@
 
 use super::error_range::others;
 use super::window::Window;
-use super::{Evaluate, Evidence};
+use super::{Evaluate, Evidence, NORMAL_95};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
-/// Deviations of the filter: 95 % of a normal error.
-const DEVIATIONS: f64 = 1.96;
 /// How many times the angle of the coherence that is seen counts, and how much that of full coherence.
 const SEEN: f64 = 2.0;
 const UNSEEN: f64 = 0.1;
@@ -116,12 +114,12 @@ impl Evaluate for Observed {
                 self.take(evidence);
             }
         }
-        let own = evidence.covariance.diagonal().map(|variance| DEVIATIONS * variance.sqrt());
+        let own = evidence.covariance.diagonal().map(|variance| NORMAL_95 * variance.sqrt());
         own.zip_map(&self.coherent, f64::hypot).into()
     }
 
     fn hidden(&self) -> Option<Vector3<f64>> {
-        Some(self.coherent / DEVIATIONS)
+        Some(self.coherent / NORMAL_95)
     }
 }
 
@@ -181,6 +179,6 @@ mod tests {
             rate_covariance: Matrix3::identity(),
             rate_with_static: Matrix3::zeros(),
         };
-        assert_eq!(range.range(&evidence), [DEVIATIONS; 3]);
+        assert_eq!(range.range(&evidence), [NORMAL_95; 3]);
     }
 }
