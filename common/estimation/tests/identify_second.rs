@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use estimation::flexure::Flexure;
-use estimation::identify::whittle::identify_two;
+use estimation::identify::whittle::identify_modes;
 use estimation::identify::{Identified, Kind, Series};
 use frames::unit::{ARCMIN, ARCSEC};
 use nalgebra::Vector2;
@@ -36,7 +36,8 @@ fn rates(modes: &[Flexure], length_s: f64, seed: u64) -> Vec<f64> {
 }
 
 fn two(modes: &[Flexure], length_s: f64, seed: u64) -> Option<[Identified; 2]> {
-    identify_two(&Series { kind: Kind::Rates, values: &rates(modes, length_s, seed), step_s: STEP_S })
+    let values = rates(modes, length_s, seed);
+    identify_modes(&Series { kind: Kind::Rates, values: &values, step_s: STEP_S })?.try_into().ok()
 }
 
 #[test]

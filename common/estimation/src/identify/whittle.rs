@@ -79,20 +79,11 @@ pub fn identify(series: &Series, settings: &Settings) -> Option<Identified> {
     Some(found)
 }
 
-/// Identifies an axis that has two modes, the slower one first; `None` if the data do not demand the second.
-pub fn identify_two(series: &Series) -> Option<[Identified; 2]> {
+/// Identifies the modes of an axis, the slower one first: two if the data demand a second, otherwise one. `None` if the band is empty or nothing converges.
+pub fn identify_modes(series: &Series) -> Option<Vec<Identified>> {
     let fit = Fit::new(series, &Settings::of(series))?;
     let (one, cost) = fit.best()?;
-    if fit.misfit(&one) < WORTH_A_LOOK {
-        return None;
-    }
-    let (two, least) = fit.second(&one)?;
-    if 2.0 * (cost - least) < SECOND_DECISIVE {
-        return None;
-    }
-    let mut found: [Identified; 2] = fit.identified(&two, series)?.try_into().ok()?;
-    found.sort_by(|one, other| one.flexure.b.total_cmp(&other.flexure.b));
-    Some(found)
+    fit.two(&one, cost, series).or_else(|| fit.identified(&one, series))
 }
 
 /// A model that was fitted to a series.
@@ -215,6 +206,20 @@ impl Fit {
             count += 1.0;
         }
         sum + if count > 0.0 { self.data.weight * excess * excess / count } else { 0.0 }
+    }
+
+    /// Both modes, if a second beside the `one` found at its `cost` is demanded.
+    fn two(&self, one: &Logs<ONE>, cost: f64, series: &Series) -> Option<Vec<Identified>> {
+        if self.misfit(one) < WORTH_A_LOOK {
+            return None;
+        }
+        let (two, least) = self.second(one)?;
+        if 2.0 * (cost - least) < SECOND_DECISIVE {
+            return None;
+        }
+        let mut found = self.identified(&two, series)?;
+        found.sort_by(|one, other| one.flexure.b.total_cmp(&other.flexure.b));
+        Some(found)
     }
 
     /// The modes with what is known of them.

@@ -2,6 +2,7 @@ use super::Settings;
 use super::axis::Identified;
 use super::chain::{Anchor, Chain};
 use super::change::changed;
+use super::method::Method;
 use super::safety::{SHORT_S, is_not_slow, safe};
 use super::series::{Kind, Series};
 use super::whittle;
@@ -60,10 +61,12 @@ impl Windowed {
         let solver = method.solver(&x, dictionary);
         let looked_for = self.settings.second_mode && self.window.length_s() > SHORT_S;
         let modes = |series: &Series| {
-            let two = if looked_for { whittle::identify_two(series) } else { None };
-            match two {
-                Some([mode, second]) => Some(Axis { mode, second: Some(second) }),
-                None => solver.solve(series).map(|mode| Axis { mode, second: None }),
+            let found = if looked_for && series.is_usable() { whittle::identify_modes(series) } else { None };
+            match found.as_deref() {
+                Some(&[mode, second]) => Some(Axis { mode, second: Some(second) }),
+                // what the method itself would find
+                Some(&[mode]) if method == Method::Whittle => Some(Axis { mode, second: None }),
+                _ => solver.solve(series).map(|mode| Axis { mode, second: None }),
             }
         };
         Some([modes(&x)?, modes(&y)?, modes(&z)?])
