@@ -14,7 +14,7 @@ use super::adoption::Adoption;
 use super::{Settings, attitude_of_deck, row_major};
 use crate::Estimator;
 use crate::align::{DelayRegistrar, Register, Registrar, Registration};
-use crate::evaluate::{Evaluate, Evidence};
+use crate::evaluate::{Evaluate, Evidence, NORMAL_95};
 use crate::flexure::Hull;
 use crate::matching::View;
 use crate::matching::deck::Options;
@@ -41,8 +41,6 @@ const GROWN: f64 = 1.2;
 const LATEST_WINDOW_S: f64 = 10.0;
 /// By how much more than a step the range is widened before it.
 const MARGIN: f64 = 1.2;
-/// Deviations that hold 95 % of a normal error.
-const DEVIATIONS: f64 = 1.96;
 /// The slow filter starts so long after the fast one, s: how large the slow part of the flexure is, no shorter window tells. From the first two minutes
 /// on it put 100 arcsec into the demonstration.
 const SLOW_FROM_S: f64 = 600.0;
@@ -190,10 +188,10 @@ impl DeckEstimator {
         };
         let Some(now) = live.deck.together().filter(|_| !live.is_coasting()) else { return };
         let hull = self.hull(origin);
-        let new = || Box::new(Slow::new(&self.settings, live.deck.so3(), &hull));
+        let new = || Box::new(Slow::new(&self.settings, live.deck.so3(), hull));
         let mut slow = self.slow.take().unwrap_or_else(new);
-        slow.set_flexure(&hull);
-        self.slow = slow.step(time_ns, now, felt.disturbance, &hull).map(|()| slow);
+        slow.set_flexure(hull);
+        self.slow = slow.step(time_ns, now, felt.disturbance).map(|()| slow);
     }
 
     /// By how much the deformation is turned by what the slow motion shows and the waves hide, and the half width of its range; `None` where the range
@@ -203,7 +201,7 @@ impl DeckEstimator {
         let known = own + Matrix3::from_diagonal(&hidden.component_mul(&hidden));
         let (turn, covariance) = self.slow.as_ref()?.correct(live.deck.so3(), live.deck.together()?, &known)?;
         let triad = self.settings.area.grade.triad_variance();
-        Some((turn, covariance.diagonal().map(|variance| DEVIATIONS * (variance + triad).sqrt()).into()))
+        Some((turn, covariance.diagonal().map(|variance| NORMAL_95 * (variance + triad).sqrt()).into()))
     }
 
     /// Collects motion until it shows the installation; then a filter starts.

@@ -36,11 +36,11 @@ const CALMER: f64 = 1e-3;
 pub struct Slow {
     so3: So3,
     p: Covariance,
-    /// Variance of a mean by the flexure's slow part, about each axis, rad^2.
-    flexure: Vector3<f64>,
+    /// The fast filter's flexure model.
+    hull: Hull,
     block: Block,
+    /// The last moment of the epoch; `None` before its first.
     last: Option<Last>,
-    begun: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +70,7 @@ fn still(hull: &Hull) -> Hull {
 
 impl Slow {
     /// A filter that starts from where a fast one stands, but knows nothing of what that believes.
-    pub fn new(settings: &DeckSettings, fast: &So3, hull: &Hull) -> Self {
+    pub fn new(settings: &DeckSettings, fast: &So3, hull: Hull) -> Self {
         let grade = so3::Grade { static_noise: settings.area.grade.static_noise * CALMER, ..settings.area.grade };
         let mut p = Covariance::zeros();
         for axis in 0..3 {
@@ -81,28 +81,31 @@ impl Slow {
         }
         let scale = grade.scale_covariance(fast.static_part());
         p.fixed_view_mut::<6, 6>(place::SCALE, place::SCALE).copy_from(&scale);
-        let so3 = So3::new(grade, still(hull), fast.static_part(), fast.drift());
-        let mut slow = Self { so3, p, flexure: Vector3::zeros(), block: Block::new(), last: None, begun: false };
-        slow.set_flexure(hull);
-        slow
+        let so3 = So3::new(grade, still(&hull), fast.static_part(), fast.drift());
+        Self { so3, p, hull, block: Block::new(), last: None }
     }
 
-    /// How large the slow part of the flexure is.
-    pub fn set_flexure(&mut self, hull: &Hull) {
-        let density =
-            |axis: usize| hull.modes[axis].spectrum(0.0) + hull.second[axis].map_or(0.0, |mode| mode.spectrum(0.0));
-        self.flexure = Vector3::from_fn(|axis, _| HANN * density(axis) / BLOCK_S);
+    /// Replaces the flexure model from now on.
+    pub fn set_flexure(&mut self, hull: Hull) {
+        self.hull = hull;
+    }
+
+    /// Variance of a mean by the flexure's slow part, about each axis, rad^2.
+    fn flexure_variance(&self) -> Vector3<f64> {
+        let Hull { modes, second } = &self.hull;
+        let density = |axis: usize| modes[axis].spectrum(0.0) + second[axis].map_or(0.0, |mode| mode.spectrum(0.0));
+        Vector3::from_fn(|axis, _| HANN * density(axis) / BLOCK_S)
     }
 
     /// The attitudes to come have other starting axes.
     pub fn leave_epoch(&mut self) {
-        (self.last, self.begun, self.block) = (None, false, Block::new());
+        (self.last, self.block) = (None, Block::new());
     }
 
     /// Takes in the units' attitudes of a moment, with the angle errors that came in since the one before, rad; `None` when the numbers have become useless.
-    pub fn step(&mut self, time_ns: i64, now: &Together, disturbance: f64, hull: &Hull) -> Option<()> {
+    pub fn step(&mut self, time_ns: i64, now: &Together, disturbance: f64) -> Option<()> {
         let Some(last) = &mut self.last else {
-            self.start_epoch(now, hull);
+            self.start_epoch(now);
             self.last = Some(Last { time_ns, now: *now, disturbance: 0.0 });
             return Some(());
         };
@@ -130,10 +133,11 @@ impl Slow {
     }
 
     /// The constant of a new epoch is defined by static part and flexure, of which the flexure is not known.
-    fn start_epoch(&mut self, now: &Together, hull: &Hull) {
+    fn start_epoch(&mut self, now: &Together) {
         for axis in 0..3 {
-            let second = hull.second[axis].map_or(0.0, |mode| mode.sigma);
-            self.p[(place::FLEXURE + axis, place::FLEXURE + axis)] = hull.modes[axis].sigma.powi(2) + second * second;
+            let second = self.hull.second[axis].map_or(0.0, |mode| mode.sigma);
+            let variance = self.hull.modes[axis].sigma.powi(2) + second * second;
+            self.p[(place::FLEXURE + axis, place::FLEXURE + axis)] = variance;
         }
         let transition = self.so3.start_epoch(now.a_m, now.a_s, Rot::identity());
         self.p = sequential::carried(&transition, &self.p);
@@ -141,7 +145,7 @@ impl Slow {
             self.p.fill_row(axis, 0.0);
             self.p.fill_column(axis, 0.0);
         }
-        (self.begun, self.block) = (true, Block::new());
+        self.block = Block::new();
     }
 
     fn add(&mut self, time_s: f64) {
@@ -164,7 +168,7 @@ impl Slow {
         let walk = self.so3.deformation_noise();
         let prediction = self.so3.propagate();
         if block.weight > 0.0 {
-            let noise = Matrix3::from_diagonal(&self.flexure) + walk;
+            let noise = Matrix3::from_diagonal(&self.flexure_variance()) + walk;
             let (residual, rows) = (block.residual / block.weight, block.rows / block.weight);
             let correction = sequential::update(&mut self.p, &residual, &rows, &noise)?;
             self.so3.inject(&(prediction.transition * correction.error));
@@ -176,9 +180,7 @@ impl Slow {
     /// By how much the deformation by the constant of a fast filter is turned by what this one shows, and the covariance after that; `known` is the
     /// covariance before (rad^2, in m), `now` the units' attitudes. `None` before anything shows.
     pub fn correct(&self, fast: &So3, now: &Together, known: &Matrix3<f64>) -> Option<(Rot<Main, Main>, Matrix3<f64>)> {
-        if !self.begun {
-            return None;
-        }
+        self.last?;
         let rows = self.so3.deformation_rows();
         let seen = rows * self.p * rows.transpose() + self.so3.deformation_noise();
         let gain = known * (known + seen).try_inverse()?;
@@ -233,7 +235,7 @@ mod tests {
         let wrong = Rot::<Main, Main>::exp(Vec3::from(WRONG) * ARCSEC) * fixed;
         let hull = Hull::from([HULL; 3]);
         let mut fast = So3::new(settings().area.grade, hull, wrong, Vec3::ZERO);
-        let mut slow = Slow::new(&settings(), &fast, &hull);
+        let mut slow = Slow::new(&settings(), &fast, hull);
         let (start, first) = ship(0.0);
         let attitudes = |t: f64| {
             let (a, swing) = ship(t);
@@ -245,7 +247,7 @@ mod tests {
         for k in 0..=(until_s / 0.1) as i64 {
             let (a_m, a_s) = attitudes(k as f64 * 0.1);
             let now = Together { a_m, a_s, w_m: Vec3::ZERO, gained: Velocities::ZERO };
-            slow.step(nanoseconds(k as f64 * 0.1), &now, 0.0, &hull).expect("numbers");
+            slow.step(nanoseconds(k as f64 * 0.1), &now, 0.0).expect("numbers");
         }
         let known = Matrix3::identity() * (HIDDEN * ARCSEC).powi(2);
         let (_, swing) = ship(until_s);
