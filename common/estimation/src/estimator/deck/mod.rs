@@ -191,7 +191,11 @@ impl DeckEstimator {
         let new = || Box::new(Slow::new(&self.settings, live.deck.so3(), hull));
         let mut slow = self.slow.take().unwrap_or_else(new);
         slow.set_flexure(hull);
-        self.slow = slow.step(time_ns, now, felt.disturbance).map(|()| slow);
+        let stepped = slow.step(time_ns, now, felt.disturbance);
+        self.slow = stepped.map(|()| match slow.refuted(&self.settings, live.deck.so3()) {
+            Some(anew) => Box::new(anew),
+            None => slow,
+        });
     }
 
     /// By how much the deformation is turned by what the slow motion shows and the waves hide, and the half width of its range; `None` where the range

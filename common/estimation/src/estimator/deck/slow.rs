@@ -30,6 +30,12 @@ const HANN: f64 = 1.5;
 /// By how much calmer the static part is taken to be than the fast filter takes it. That one has the waves at every moment and loses nothing by reckoning with
 /// sudden bends; over the half hour from one turn to the next its figure would be seven minutes of arc, and a turn would be forgotten as soon as seen.
 const CALMER: f64 = 1e-3;
+/// By how much less calm it is taken to be after the means have refuted that, at most as the fast filter takes it.
+const LIVELIER: f64 = 30.0;
+/// What refutes it: the square of the innovations in terms of their variance, over about so many means. 1 is expected, and 0.2 its deviation; a static part
+/// that moves by 800 arcsec in two hours comes to hundreds, and taken for still it was 80 arcsec wrong.
+const REFUTING: f64 = 2.0;
+const REMEMBERED: f64 = 8.0;
 
 /// The slow filter.
 #[derive(Clone, Debug)]
@@ -41,6 +47,9 @@ pub struct Slow {
     block: Block,
     /// The last moment of the epoch; `None` before its first.
     last: Option<Last>,
+    calmer: f64,
+    /// Mean of the squared innovations in terms of their variance.
+    surprise: f64,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -71,7 +80,17 @@ fn still(hull: &Hull) -> Hull {
 impl Slow {
     /// A filter that starts from where a fast one stands, but knows nothing of what that believes.
     pub fn new(settings: &DeckSettings, fast: &So3, hull: Hull) -> Self {
-        let grade = so3::Grade { static_noise: settings.area.grade.static_noise * CALMER, ..settings.area.grade };
+        Self::calmer_by(CALMER, settings, fast, hull)
+    }
+
+    /// A filter that starts anew and takes the static part to move more, where the means have refuted what this one takes it to do.
+    pub fn refuted(&self, settings: &DeckSettings, fast: &So3) -> Option<Self> {
+        let refuted = self.surprise > REFUTING;
+        refuted.then(|| Self::calmer_by((self.calmer * LIVELIER).min(1.0), settings, fast, self.hull))
+    }
+
+    fn calmer_by(calmer: f64, settings: &DeckSettings, fast: &So3, hull: Hull) -> Self {
+        let grade = so3::Grade { static_noise: settings.area.grade.static_noise * calmer, ..settings.area.grade };
         let mut p = Covariance::zeros();
         for axis in 0..3 {
             p[(place::STATIC + axis, place::STATIC + axis)] = UNKNOWN * UNKNOWN;
@@ -82,7 +101,7 @@ impl Slow {
         let scale = grade.scale_covariance(fast.static_part());
         p.fixed_view_mut::<6, 6>(place::SCALE, place::SCALE).copy_from(&scale);
         let so3 = So3::new(grade, still(&hull), fast.static_part(), fast.drift());
-        Self { so3, p, hull, block: Block::new(), last: None }
+        Self { so3, p, hull, block: Block::new(), last: None, calmer, surprise: 1.0 }
     }
 
     /// Replaces the flexure model from now on.
@@ -171,6 +190,7 @@ impl Slow {
             let noise = Matrix3::from_diagonal(&self.flexure_variance()) + walk;
             let (residual, rows) = (block.residual / block.weight, block.rows / block.weight);
             let correction = sequential::update(&mut self.p, &residual, &rows, &noise)?;
+            self.surprise += (correction.surprise - self.surprise) / REMEMBERED;
             self.so3.inject(&(prediction.transition * correction.error));
         }
         self.p = sequential::carried(&prediction.transition, &self.p) + prediction.noise;
@@ -228,10 +248,21 @@ mod tests {
     /// What the fast filter believes to know, arcsec.
     const HIDDEN: f64 = 100.0;
 
-    /// Error of a deformation as wrong as at the start, corrected after a time, and its covariance, arcsec, arcsec^2. The flexure goes with the swing.
-    fn seen(until_s: f64) -> (Vector3<f64>, Matrix3<f64>) {
+    struct Seen {
+        /// Error of a deformation as wrong as at the start, and its covariance, arcsec, arcsec^2.
+        error: Vector3<f64>,
+        covariance: Matrix3<f64>,
+        /// How often the static part was seen to move more than thought.
+        refuted: usize,
+    }
+
+    /// What is seen after a time of a deck that bends with the swing, and by so much, arcsec, in two hours to and fro.
+    fn seen(until_s: f64, moving: f64) -> Seen {
         let fixed = Rot::<Main, Sub>::exp(Vec3::new(0.3, -0.2, 0.5));
-        let bent = |swing: Vec3<Main>| Rot::<Main, Main>::exp(swing.cross(Vec3::new(1.0, -2.0, 0.5)) * COUPLED) * fixed;
+        let moved = |t: f64| Vec3::new(1.0, 0.7, -0.5) * (moving * ARCSEC * (t * 2.0 * PI / 7200.0).sin());
+        let bent = |t: f64, swing: Vec3<Main>| {
+            Rot::<Main, Main>::exp(moved(t) + swing.cross(Vec3::new(1.0, -2.0, 0.5)) * COUPLED) * fixed
+        };
         let wrong = Rot::<Main, Main>::exp(Vec3::from(WRONG) * ARCSEC) * fixed;
         let hull = Hull::from([HULL; 3]);
         let mut fast = So3::new(settings().area.grade, hull, wrong, Vec3::ZERO);
@@ -240,14 +271,18 @@ mod tests {
         let attitudes = |t: f64| {
             let (a, swing) = ship(t);
             let a_m = start.relabel::<Main, MainStart>().inverse().relabel::<MainStart, MainStart>() * a;
-            (a_m, bent(first).inverse().relabel::<SubStart, MainStart>() * a_m * bent(swing))
+            (a_m, bent(0.0, first).inverse().relabel::<SubStart, MainStart>() * a_m * bent(t, swing))
         };
         let (a_m, a_s) = attitudes(0.0);
         fast.start_epoch(a_m, a_s, Rot::identity());
+        let mut refuted = 0;
         for k in 0..=(until_s / 0.1) as i64 {
             let (a_m, a_s) = attitudes(k as f64 * 0.1);
             let now = Together { a_m, a_s, w_m: Vec3::ZERO, gained: Velocities::ZERO };
             slow.step(nanoseconds(k as f64 * 0.1), &now, 0.0).expect("numbers");
+            if let Some(anew) = slow.refuted(&settings(), &fast) {
+                (slow, refuted) = (anew, refuted + 1);
+            }
         }
         let known = Matrix3::identity() * (HIDDEN * ARCSEC).powi(2);
         let (_, swing) = ship(until_s);
@@ -255,12 +290,14 @@ mod tests {
         let now = Together { a_m, a_s, w_m: Vec3::ZERO, gained: Velocities::ZERO };
         let (turn, covariance) = slow.correct(&fast, &now, &known).expect("begun");
         let deformation = a_m.inverse() * fast.constant() * a_s;
-        ((turn * deformation * bent(swing).inverse()).log().column() / ARCSEC, covariance / (ARCSEC * ARCSEC))
+        let error = (turn * deformation * bent(until_s, swing).inverse()).log().column() / ARCSEC;
+        Seen { error, covariance: covariance / (ARCSEC * ARCSEC), refuted }
     }
 
     #[test]
     fn a_straight_course_tells_nothing_and_is_not_believed() {
-        let (error, covariance) = seen(1190.0);
+        let Seen { error, covariance, refuted } = seen(1190.0, 0.0);
+        assert_eq!(refuted, 0);
         let wrong = Vector3::from(WRONG);
         assert!(covariance.diagonal().iter().all(|variance| variance.sqrt() > 0.9 * HIDDEN), "{covariance}");
         assert!((error - wrong).amax() < 5.0, "{error}");
@@ -268,11 +305,23 @@ mod tests {
 
     #[test]
     fn a_turn_shows_what_the_waves_hide_about_the_axes_that_turn() {
-        let (error, covariance) = seen(2400.0);
+        let Seen { error, covariance, refuted } = seen(2400.0, 0.0);
+        assert_eq!(refuted, 0);
         for axis in 0..2 {
             let sigma = covariance[(axis, axis)].sqrt();
             assert!(sigma < 25.0 && error[axis].abs() < 3.0 * sigma, "{axis}: {error} {covariance}");
         }
         assert!(covariance[(2, 2)].sqrt() > 0.9 * HIDDEN, "{covariance}");
+    }
+
+    #[test]
+    fn a_deck_that_moves_is_not_taken_for_still() {
+        let (brief, long) = (seen(1190.0, 800.0), seen(3600.0, 800.0));
+        assert!(brief.refuted > 0 && long.refuted <= 4, "{} {}", brief.refuted, long.refuted);
+        for Seen { error, covariance, .. } in [brief, long] {
+            for axis in 0..3 {
+                assert!(error[axis].abs() < 2.5 * covariance[(axis, axis)].sqrt(), "{axis}: {error} {covariance}");
+            }
+        }
     }
 }
