@@ -1,7 +1,7 @@
 //! The estimator against the same estimator told the truth.
 
 use super::AXES;
-use super::measure::Measured;
+use super::measure::{Measured, TOLD_LATER_S};
 use super::paired::{Paired, interval, of_one, ratio, root};
 use super::scenario::Scenario;
 use crate::{Bound, Claim, Findings, Published, Row, Verdict, rms, spread};
@@ -27,7 +27,31 @@ pub(super) fn conclude(scenario: &Scenario, trials: &[Option<Measured>]) -> Find
     for span in (0..SPAN_NAMES.len()).filter(|_| !trials.is_empty()) {
         rows.extend(error_rows(scenario, &pairs(&trials, span), span));
     }
+    rows.extend(later_rows(scenario, &trials));
     Findings { rows, figures: Vec::new() }
+}
+
+/// What it costs to hear of a change of the flexure half a minute later than it happens, were the new flexure told then.
+fn later_rows(scenario: &Scenario, trials: &[&Measured]) -> Vec<Row> {
+    let pairs: Vec<Paired> = trials.iter().filter_map(|trial| trial.told_later).collect();
+    let row = |(axis, axes): (&str, &[usize])| {
+        let claim = Claim {
+            id: format!("deck/{}/told-later/ratio/{axis}", scenario.id),
+            table: format!(
+                "{}: RMSE if told of changes {TOLD_LATER_S} s late over that if told at once",
+                scenario.title
+            ),
+            row: SPAN_NAMES[0].1.into(),
+            axis: axis.into(),
+            unit: String::new(),
+            bound: Bound::Value(1.0),
+            paper: Published::Nothing("what no method that has to see a change can do much better than".into()),
+            why: "Half a minute is five swings of the new flexure.".into(),
+        };
+        let values: Vec<f64> = pairs.iter().map(|pair| of_one(pair, axes)).collect();
+        judged(claim, ratio(&pairs, axes), &values)
+    };
+    POOLS.into_iter().filter(|_| !pairs.is_empty()).map(row).collect()
 }
 
 fn pairs(trials: &[&Measured], span: usize) -> Vec<Paired> {

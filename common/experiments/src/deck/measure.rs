@@ -13,12 +13,17 @@ const FROM_S: f64 = 60.0;
 /// The end of the first minutes, s.
 pub(super) const EARLY_S: f64 = 300.0;
 
+/// No method knows of a change at once: an identification needs data of the flexure that is new, half a minute being five of its swings.
+pub(super) const TOLD_LATER_S: f64 = 30.0;
+
 /// What is kept of a trial.
 #[derive(Clone, Debug)]
 pub(super) struct Measured {
     pub seed: u64,
     /// Over the same estimator told the truth, by span.
     pub truth: [Option<Paired>; 2],
+    /// Of the same told of changes of the flexure [`TOLD_LATER_S`] later than they happen, over the one told the truth, after five minutes; only where there are any.
+    pub told_later: Option<Paired>,
     /// Over each rival, by span.
     pub rivals: Vec<[Option<Paired>; 2]>,
     /// The estimator's own figures, then those of the one told the truth.
@@ -75,12 +80,16 @@ pub(super) fn measure(scenario: &Scenario, trial: &Trial) -> Result<Option<Measu
     let data = Data::simulate(&configuration)?;
     let default = method::default(&configuration);
     let ours = run_blind(&default, &data);
-    let truth = run_true(&method::told(&default), &data);
+    let told = method::told(&default);
+    let truth = run_true(&told, &data, 0.0);
+    let changes = !configuration.areas[0].simulation.flexure_changes.is_empty();
+    let later = changes.then(|| run_true(&told, &data, TOLD_LATER_S));
     let rivals = scenario.rivals.iter().map(|rival| Ok(paired(&ours, &run_blind(&rival.on(&configuration)?, &data))));
     Ok(Some(Measured {
         seed: trial.seed,
         rivals: rivals.collect::<Result<_, Fault>>()?,
         truth: paired(&ours, &truth),
+        told_later: later.and_then(|later| paired(&later, &truth)[0]),
         honesty: [Honesty::of(&ours), Honesty::of(&truth)],
     }))
 }

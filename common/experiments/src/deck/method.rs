@@ -24,13 +24,13 @@ pub(super) fn told(method: &Configuration) -> Configuration {
     })
 }
 
-/// Runs a method that is told the flexure from the start on, and tells it how the flexure changes.
-pub(super) fn run_true(method: &Configuration, data: &Data) -> Track {
+/// Runs a method that is told the flexure from the start on, and tells it how the flexure changes, so much `later` than it does, s.
+pub(super) fn run_true(method: &Configuration, data: &Data, later: f64) -> Track {
     let begin_ns = data.pairs.first().map_or(0, |pair| pair.header.time_ns);
     let set = |(change, id): (&simulation::FlexureChange, u64)| FlexureParams {
         header: Header::default(),
         id,
-        effective_from_ns: begin_ns + nanoseconds(change.at_s),
+        effective_from_ns: begin_ns + nanoseconds(change.at_s + later),
         mu: change.flexure.map(|axis| axis.mu),
         b: change.flexure.map(|axis| axis.b),
         sigma: change.flexure.map(|axis| axis.sigma),
