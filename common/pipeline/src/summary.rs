@@ -1,6 +1,7 @@
 //! The figures of a run: `summary.json`.
 
 use crate::solution_file::deviations;
+use estimation::evaluate::NORMAL_95;
 use frames::{Main, Nav, Rot, Sub, Vec3, unit};
 use messages::{Solution, Truth};
 use serde::Serialize;
@@ -178,7 +179,7 @@ impl Sums {
             let error = deck_error(solution, truth).array();
             for axis in 0..3 {
                 self.deck_square[axis] += error[axis].powi(2);
-                self.deck_covered[axis] += u64::from(error[axis].abs() <= 1.96 * solution.deck_sigma[axis]);
+                self.deck_covered[axis] += u64::from(error[axis].abs() <= NORMAL_95 * solution.deck_sigma[axis]);
             }
         }
     }

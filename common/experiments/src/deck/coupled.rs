@@ -8,6 +8,7 @@ use super::method;
 use crate::{
     Bound, Claim, Fault, Findings, Published, Row, Stretch, Study, Track, Trial, Trials, mean, presets, run_together,
 };
+use estimation::evaluate::NORMAL_95;
 use frames::Vec3;
 use pipeline::configuration::Configuration;
 use rand::{RngExt, SeedableRng};
@@ -19,8 +20,6 @@ use std::f64::consts::TAU;
 const DURATION_S: (f64, f64) = (10_800.0, 600.0);
 /// Distance of the points of a track, s: errors change with the waves.
 const EVERY_S: f64 = 1.0;
-/// Deviations that hold 95 % of a normal error.
-const DEVIATIONS: f64 = 1.96;
 /// The largest share of the flexure's deviation that is coherent.
 const LARGEST: f64 = 0.6;
 /// Damping of a resonator over the critical one.
@@ -170,9 +169,9 @@ impl Measured {
             share,
             valid: all.valid_share(),
             range: all.coverage(|point| point.range),
-            naive: all.coverage(|point| point.sigma().map(|sigma| DEVIATIONS * sigma)),
+            naive: all.coverage(|point| point.sigma().map(|sigma| NORMAL_95 * sigma)),
             width: width(track.over(turned_s..)),
-            dynamic: all.held(|point| point.dynamic_error, |point| point.dynamic_sigma.map(|sigma| DEVIATIONS * sigma)),
+            dynamic: all.held(|point| point.dynamic_error, |point| point.dynamic_sigma.map(|sigma| NORMAL_95 * sigma)),
         }
     }
 }
@@ -180,7 +179,7 @@ impl Measured {
 fn width(over: Stretch) -> [f64; 3] {
     over.mean_of(|point| {
         let sigma = point.sigma();
-        [0, 1, 2].map(|axis| point.range[axis] / (DEVIATIONS * sigma[axis]))
+        [0, 1, 2].map(|axis| point.range[axis] / (NORMAL_95 * sigma[axis]))
     })
 }
 

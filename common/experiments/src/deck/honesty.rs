@@ -5,11 +5,10 @@ use super::claims::{judged, largest};
 use super::measure::Measured;
 use super::scenario::Scenario;
 use crate::{Bound, Claim, Findings, Published, Row, mean};
+use estimation::evaluate::NORMAL_95;
 
 /// What an error may be over its deviation in the first five minutes.
 const FARTHEST: f64 = 4.5;
-/// The deviation of a standard normal value that 95 % lie within.
-const NORMAL: f64 = 1.96;
 /// Whose figures stand in [`Measured::honesty`]: key and name.
 const WHOSE: [(&str, &str); 2] = [("", ""), ("-told", ", told the truth")];
 
@@ -103,7 +102,7 @@ fn step_row(scenario: &Scenario, trials: &[&Measured]) -> Row {
 fn nees_band(count: usize) -> [f64; 2] {
     let freedom = 3.0 * count as f64;
     let part = 2.0 / (9.0 * freedom);
-    [-NORMAL, NORMAL].map(|z| (3e3 * (1.0 - part + z * part.sqrt()).powi(3)).round() / 1e3)
+    [-NORMAL_95, NORMAL_95].map(|z| (3e3 * (1.0 - part + z * part.sqrt()).powi(3)).round() / 1e3)
 }
 
 #[cfg(test)]
