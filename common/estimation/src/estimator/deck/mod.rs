@@ -191,11 +191,16 @@ impl DeckEstimator {
         let new = || Box::new(Slow::new(&self.settings, live.deck.so3(), hull));
         let mut slow = self.slow.take().unwrap_or_else(new);
         slow.set_flexure(hull);
-        let stepped = slow.step(time_ns, now, felt.disturbance);
-        self.slow = stepped.map(|()| match slow.refuted(&self.settings, live.deck.so3()) {
-            Some(anew) => Box::new(anew),
-            None => slow,
-        });
+        let Some(complete) = slow.step(time_ns, now, felt.disturbance) else { return };
+        if complete {
+            *slow = slow.revised(&self.settings, live.deck.so3());
+        }
+        self.slow = Some(slow);
+    }
+
+    /// By how much the covariance is too small for what the data say; 1 where they do not contradict.
+    fn excess(&self, live: &Running) -> f64 {
+        live.surprise().excess().max(self.slow.as_ref().map_or(1.0, |slow| slow.excess()))
     }
 
     /// By how much the deformation is turned by what the slow motion shows and the waves hide, and the half width of its range; `None` where the range
@@ -332,7 +337,7 @@ impl DeckEstimator {
         let coasting = running.is_coasting();
         let View { deformation, rows, noise, static_part, static_rows, rate, rate_rows, drift, delay, skew } =
             running.deck.view(coasting);
-        let excess = running.surprise().excess();
+        let excess = self.excess(running);
         let triad = Matrix3::identity() * self.settings.area.grade.triad_variance();
         let own = (rows * p * rows.transpose() + noise) * excess;
         let covariance = own + triad;
@@ -420,7 +425,7 @@ impl Estimator for DeckEstimator {
         flags |= match &self.live {
             None => Flags::REGISTERING,
             Some(live) if live.is_coasting() => Flags::COASTING,
-            Some(live) if !live.surprise().is_small() => Flags::INCONSISTENT,
+            Some(live) if self.excess(live) > 1.0 => Flags::INCONSISTENT,
             Some(_) => Flags::empty(),
         };
         self.publish(pair, flags)

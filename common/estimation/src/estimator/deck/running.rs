@@ -16,6 +16,10 @@ const BROKEN: f64 = 0.1;
 /// A velocity that is off by so many deviations is not one to learn from: accelerometers have failed for a moment.
 const LOST: f64 = 30.0;
 
+/// How far back innovations count, s, and what their mean square may be.
+const SURPRISE_S: f64 = 60.0;
+const LARGEST_SURPRISE: f64 = 3.0;
+
 /// Model and covariance.
 #[derive(Clone, Debug)]
 pub struct Running {
@@ -33,7 +37,7 @@ pub struct Running {
 impl Running {
     /// Starts at an instant.
     pub fn new((deck, p): (Deck, Covariance), begin_ns: i64, period_s: f64) -> Self {
-        let surprise = Surprise::new(period_s);
+        let surprise = Surprise::new(SURPRISE_S / period_s, LARGEST_SURPRISE);
         Self { deck, p, begin_ns, last_ns: begin_ns, begun: false, coasting: true, surprise }
     }
 

@@ -8,6 +8,7 @@
 //! Hann's weights leave a few thousandths of a wave of 0.05 Hz.
 
 use super::DeckSettings;
+use super::surprise::Surprise;
 use crate::filter::sequential;
 use crate::flexure::{Flexure, Hull};
 use crate::matching::increment::Increment;
@@ -31,9 +32,9 @@ const HANN: f64 = 1.5;
 /// sudden bends; over the half hour from one turn to the next its figure would be seven minutes of arc, and a turn would be forgotten as soon as seen.
 const CALMER: f64 = 1e-3;
 /// By how much less calm it is taken to be after the means have refuted that, at most as the fast filter takes it.
-const LIVELIER: f64 = 30.0;
-/// What refutes it: the square of the innovations in terms of their variance, over about so many means. 1 is expected, and 0.2 its deviation; a static part
-/// that moves by 800 arcsec in two hours comes to hundreds, and taken for still it was 80 arcsec wrong.
+const LIVELIER: f64 = 32.0;
+/// What refutes it: the mean square of about so many innovations in terms of their variance. 1 is expected, and 0.2 its deviation; a static part that moves by
+/// 800 arcsec in two hours comes to hundreds, and taken for still it was 80 arcsec wrong.
 const REFUTING: f64 = 2.0;
 const REMEMBERED: f64 = 8.0;
 
@@ -48,8 +49,7 @@ pub struct Slow {
     /// The last moment of the epoch; `None` before its first.
     last: Option<Last>,
     calmer: f64,
-    /// Mean of the squared innovations in terms of their variance.
-    surprise: f64,
+    surprise: Surprise,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -83,10 +83,20 @@ impl Slow {
         Self::calmer_by(CALMER, settings, fast, hull)
     }
 
-    /// A filter that starts anew and takes the static part to move more, where the means have refuted what this one takes it to do.
-    pub fn refuted(&self, settings: &DeckSettings, fast: &So3) -> Option<Self> {
-        let refuted = self.surprise > REFUTING;
-        refuted.then(|| Self::calmer_by((self.calmer * LIVELIER).min(1.0), settings, fast, self.hull))
+    /// This filter, or, where the means have refuted what it takes the static part to do, one that starts anew and takes it to move more.
+    pub fn revised(self, settings: &DeckSettings, fast: &So3) -> Self {
+        if self.surprise.is_small() {
+            return self;
+        }
+        let anew = Self::calmer_by((self.calmer * LIVELIER).min(1.0), settings, fast, self.hull);
+        // there is no livelier one
+        let surprise = if self.calmer < 1.0 { anew.surprise } else { self.surprise };
+        Self { surprise, ..anew }
+    }
+
+    /// By how much the fast filter's covariance is too small for how the static part moves, which its own innovations do not show; 1 where nothing says so.
+    pub fn excess(&self) -> f64 {
+        if self.calmer < 1.0 { 1.0 } else { self.surprise.excess() }
     }
 
     fn calmer_by(calmer: f64, settings: &DeckSettings, fast: &So3, hull: Hull) -> Self {
@@ -101,7 +111,7 @@ impl Slow {
         let scale = grade.scale_covariance(fast.static_part());
         p.fixed_view_mut::<6, 6>(place::SCALE, place::SCALE).copy_from(&scale);
         let so3 = So3::new(grade, still(&hull), fast.static_part(), fast.drift());
-        Self { so3, p, hull, block: Block::new(), last: None, calmer, surprise: 1.0 }
+        Self { so3, p, hull, block: Block::new(), last: None, calmer, surprise: Surprise::new(REMEMBERED, REFUTING) }
     }
 
     /// Replaces the flexure model from now on.
@@ -121,17 +131,18 @@ impl Slow {
         (self.last, self.block) = (None, Block::new());
     }
 
-    /// Takes in the units' attitudes of a moment, with the angle errors that came in since the one before, rad; `None` when the numbers have become useless.
-    pub fn step(&mut self, time_ns: i64, now: &Together, disturbance: f64) -> Option<()> {
+    /// Takes in the units' attitudes of a moment, with the angle errors that came in since the one before, rad. Whether a mean was complete; `None` when the
+    /// numbers have become useless.
+    pub fn step(&mut self, time_ns: i64, now: &Together, disturbance: f64) -> Option<bool> {
         let Some(last) = &mut self.last else {
             self.start_epoch(now);
             self.last = Some(Last { time_ns, now: *now, disturbance: 0.0 });
-            return Some(());
+            return Some(false);
         };
         last.disturbance = last.disturbance.hypot(disturbance);
         let time_s = unit::seconds(time_ns - last.time_ns);
         if time_s < EVERY_S - 0.5e-3 {
-            return Some(());
+            return Some(false);
         }
         let step = Increment {
             time_ns,
@@ -148,7 +159,7 @@ impl Slow {
         self.so3.coast(time_s);
         self.so3.advance(&step);
         self.add(time_s);
-        if self.so3.pending_s() >= BLOCK_S { self.end_block() } else { Some(()) }
+        if self.so3.pending_s() >= BLOCK_S { self.end_block().map(|()| true) } else { Some(false) }
     }
 
     /// The constant of a new epoch is defined by static part and flexure, of which the flexure is not known.
@@ -190,7 +201,7 @@ impl Slow {
             let noise = Matrix3::from_diagonal(&self.flexure_variance()) + walk;
             let (residual, rows) = (block.residual / block.weight, block.rows / block.weight);
             let correction = sequential::update(&mut self.p, &residual, &rows, &noise)?;
-            self.surprise += (correction.surprise - self.surprise) / REMEMBERED;
+            self.surprise.take(correction.surprise);
             self.so3.inject(&(prediction.transition * correction.error));
         }
         self.p = sequential::carried(&prediction.transition, &self.p) + prediction.noise;
@@ -254,12 +265,19 @@ mod tests {
         covariance: Matrix3<f64>,
         /// How often the static part was seen to move more than thought.
         refuted: usize,
+        excess: f64,
     }
 
-    /// What is seen after a time of a deck that bends with the swing, and by so much, arcsec, in two hours to and fro.
-    fn seen(until_s: f64, moving: f64) -> Seen {
+    /// How the static part moves: by so much, arcsec, to and fro in so long, s.
+    #[derive(Clone, Copy)]
+    struct Moving(f64, f64);
+
+    const STILL: Moving = Moving(0.0, 1.0);
+
+    /// What is seen after a time of a deck that bends with the swing and moves.
+    fn seen(until_s: f64, Moving(size, period_s): Moving) -> Seen {
         let fixed = Rot::<Main, Sub>::exp(Vec3::new(0.3, -0.2, 0.5));
-        let moved = |t: f64| Vec3::new(1.0, 0.7, -0.5) * (moving * ARCSEC * (t * 2.0 * PI / 7200.0).sin());
+        let moved = |t: f64| Vec3::new(1.0, 0.7, -0.5) * (size * ARCSEC * (t * 2.0 * PI / period_s).sin());
         let bent = |t: f64, swing: Vec3<Main>| {
             Rot::<Main, Main>::exp(moved(t) + swing.cross(Vec3::new(1.0, -2.0, 0.5)) * COUPLED) * fixed
         };
@@ -279,9 +297,9 @@ mod tests {
         for k in 0..=(until_s / 0.1) as i64 {
             let (a_m, a_s) = attitudes(k as f64 * 0.1);
             let now = Together { a_m, a_s, w_m: Vec3::ZERO, gained: Velocities::ZERO };
-            slow.step(nanoseconds(k as f64 * 0.1), &now, 0.0).expect("numbers");
-            if let Some(anew) = slow.refuted(&settings(), &fast) {
-                (slow, refuted) = (anew, refuted + 1);
+            if slow.step(nanoseconds(k as f64 * 0.1), &now, 0.0).expect("numbers") {
+                refuted += usize::from(!slow.surprise.is_small());
+                slow = slow.revised(&settings(), &fast);
             }
         }
         let known = Matrix3::identity() * (HIDDEN * ARCSEC).powi(2);
@@ -291,12 +309,12 @@ mod tests {
         let (turn, covariance) = slow.correct(&fast, &now, &known).expect("begun");
         let deformation = a_m.inverse() * fast.constant() * a_s;
         let error = (turn * deformation * bent(until_s, swing).inverse()).log().column() / ARCSEC;
-        Seen { error, covariance: covariance / (ARCSEC * ARCSEC), refuted }
+        Seen { error, covariance: covariance / (ARCSEC * ARCSEC), refuted, excess: slow.excess() }
     }
 
     #[test]
     fn a_straight_course_tells_nothing_and_is_not_believed() {
-        let Seen { error, covariance, refuted } = seen(1190.0, 0.0);
+        let Seen { error, covariance, refuted, .. } = seen(1190.0, STILL);
         assert_eq!(refuted, 0);
         let wrong = Vector3::from(WRONG);
         assert!(covariance.diagonal().iter().all(|variance| variance.sqrt() > 0.9 * HIDDEN), "{covariance}");
@@ -305,8 +323,8 @@ mod tests {
 
     #[test]
     fn a_turn_shows_what_the_waves_hide_about_the_axes_that_turn() {
-        let Seen { error, covariance, refuted } = seen(2400.0, 0.0);
-        assert_eq!(refuted, 0);
+        let Seen { error, covariance, refuted, excess } = seen(2400.0, STILL);
+        assert_eq!((refuted, excess), (0, 1.0));
         for axis in 0..2 {
             let sigma = covariance[(axis, axis)].sqrt();
             assert!(sigma < 25.0 && error[axis].abs() < 3.0 * sigma, "{axis}: {error} {covariance}");
@@ -316,12 +334,20 @@ mod tests {
 
     #[test]
     fn a_deck_that_moves_is_not_taken_for_still() {
-        let (brief, long) = (seen(1190.0, 800.0), seen(3600.0, 800.0));
+        let moving = Moving(800.0, 7200.0);
+        let (brief, long) = (seen(1190.0, moving), seen(3600.0, moving));
         assert!(brief.refuted > 0 && long.refuted <= 4, "{} {}", brief.refuted, long.refuted);
-        for Seen { error, covariance, .. } in [brief, long] {
+        for Seen { error, covariance, excess, .. } in [brief, long] {
             for axis in 0..3 {
                 assert!(error[axis].abs() < 2.5 * covariance[(axis, axis)].sqrt(), "{axis}: {error} {covariance}");
             }
+            assert_eq!(excess, 1.0);
         }
+    }
+
+    #[test]
+    fn a_deck_that_moves_faster_than_any_model_is_told() {
+        let excess = seen(2400.0, Moving(800.0, 900.0)).excess;
+        assert!(excess > REFUTING, "{excess}");
     }
 }

@@ -1,21 +1,18 @@
-//! Whether the data agree with the filter: the normalised innovations squared over the last minute.
-
-/// How far back the mean reaches, s.
-const MEMORY_S: f64 = 60.0;
-/// A mean beyond this says that the covariance is too small: a filter with the right model has 1, with a cautious one less.
-const LARGEST: f64 = 3.0;
+//! Whether the data agree with a filter: the normalised innovations squared over the last corrections.
 
 /// Mean of the squared innovations in terms of their variance.
 #[derive(Clone, Copy, Debug)]
 pub struct Surprise {
     mean: f64,
     weight: f64,
+    largest: f64,
 }
 
 impl Surprise {
-    /// Of a filter that corrects so often, s.
-    pub fn new(period_s: f64) -> Self {
-        Self { mean: 1.0, weight: (period_s / MEMORY_S).clamp(0.0, 1.0) }
+    /// Of a filter whose mean reaches so many corrections back, and whose covariance is too small if it is more than `largest`: with the right model it is
+    /// 1, with a cautious one less.
+    pub fn new(corrections: f64, largest: f64) -> Self {
+        Self { mean: 1.0, weight: corrections.max(1.0).recip(), largest }
     }
 
     /// Takes the mean over the values of one correction.
@@ -25,12 +22,12 @@ impl Surprise {
 
     /// By how much the covariance is too small; 1 where nothing says so.
     pub fn excess(&self) -> f64 {
-        if self.mean > LARGEST { self.mean } else { 1.0 }
+        if self.mean > self.largest { self.mean } else { 1.0 }
     }
 
     /// Whether the covariance can be believed.
     pub fn is_small(&self) -> bool {
-        self.mean <= LARGEST
+        self.mean <= self.largest
     }
 }
 
@@ -40,7 +37,7 @@ mod tests {
 
     #[test]
     fn one_outlier_is_borne_and_a_wrong_model_is_not() {
-        let mut surprise = Surprise::new(0.1);
+        let mut surprise = Surprise::new(600.0, 3.0);
         surprise.take(900.0);
         assert!(surprise.is_small() && surprise.excess() == 1.0);
         (0..300).for_each(|_| surprise.take(9.0));
