@@ -45,12 +45,14 @@ fn a_killed_synchroniser_starts_an_epoch() {
 }
 
 #[test]
-fn a_killed_estimator_registers_anew() {
+fn a_killed_estimator_goes_on() {
     let run = Run::recorded(28.0, 4.0, 4.0);
-    let (solutions, rows, ..) = run.kill("estimate");
+    let (solutions, rows, _, story) = run.kill("estimate");
     assert_one_hole(&run, &rows);
+    assert!(story.checkpoint.is_some(), "it registered anew");
     // the identifier has handed it the last set from before the hole, and not only together with the next one
     let (before, after) = holes(&rows)[0];
+    assert!(rows.range(after..).take(20).any(|(_, row)| row.valid), "no solution at once");
     let (handed, row) = rows.range(after..).find(|(_, row)| row.params_id != 0).unwrap();
     assert!(row.params_id <= before, "no set from before the hole {before} to {after} but {}", row.params_id);
     assert!(sets(&rows).iter().all(|id| *id <= before || id > handed), "in force at {handed} only");

@@ -1,17 +1,21 @@
 //! Computes the rows of a run anew from what the rows themselves say: which samples there were and which parameters were in force.
 
 use super::first_difference;
-use messages::{FlexureParams, ImuPair};
+use messages::{FlexureParams, ImuPair, Solution};
 use pipeline::configuration::Configuration;
 use pipeline::lane;
 use pipeline::solution_file::SolutionFile;
 use pipeline::source::{Batch, Source};
 use std::collections::{BTreeMap, HashMap};
 
+/// Distance of an estimator's checkpoints.
+const CHECKPOINT_NS: i64 = 1_000_000_000;
+
 /// The columns of a row that tell what the stages had before them.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     pub params_id: u64,
+    pub valid: bool,
     /// The flag `gap`: a unit's sample was missing.
     pub gap: bool,
     /// Whether there is an attitude of the deck, for which the main INS's is needed.
@@ -36,6 +40,8 @@ pub struct Story {
     pub missing: Missing,
     pub synchroniser: Option<u64>,
     pub estimator: Option<u64>,
+    /// The checkpoint that the new estimator goes on from: 0 is the last before it.
+    pub checkpoint: Option<usize>,
     /// The first point of the new identifier's window.
     pub identifier: Option<u64>,
 }
@@ -45,7 +51,7 @@ pub fn rows(configuration: &Configuration, text: &str) -> BTreeMap<u64, Row> {
     let mut lines = text.lines();
     let names: Vec<&str> = lines.next().unwrap().split(',').collect();
     let place = |name: &str| names.iter().position(|n| *n == name).unwrap();
-    let [t_s, params_id, flags, roll] = ["t_s", "params_id", "flags", "roll_deg"].map(place);
+    let [t_s, valid, params_id, flags, roll] = ["t_s", "valid", "params_id", "flags", "roll_deg"].map(place);
     let mut rows = BTreeMap::new();
     for line in lines {
         let cells: Vec<&str> = line.split(',').collect();
@@ -54,6 +60,7 @@ pub fn rows(configuration: &Configuration, text: &str) -> BTreeMap<u64, Row> {
         assert!((sequence - sequence.round()).abs() < 1e-3, "{line}");
         let row = Row {
             params_id: cells[params_id].parse().unwrap(),
+            valid: cells[valid] == "1",
             gap: cells[flags].split('|').any(|flag| flag == "gap"),
             deck: !cells[roll].is_empty(),
         };
@@ -89,10 +96,15 @@ pub fn retrace(configuration: &Configuration, text: &str, story: &Story) -> Resu
     let mut known: HashMap<u64, FlexureParams> = HashMap::new();
     let mut file = SolutionFile::new(Vec::new()).unwrap();
     let mut in_force = 0;
+    let mut checkpoints: Vec<Solution> = Vec::new();
     for (number, row) in &rows {
         let pair = pairs.remove(number).ok_or(format!("no pair {number} comes of the samples"))?;
         if story.estimator == Some(*number) {
             (estimator, in_force) = (lane::estimator(configuration, 0), 0);
+            if let Some(back) = story.checkpoint {
+                let last = checkpoints.iter().rev().nth(back).ok_or("there is no such checkpoint")?;
+                estimator.resume(last);
+            }
         }
         if story.identifier == Some(*number) {
             identifier = lane::identifier(configuration, 0);
@@ -104,6 +116,10 @@ pub fn retrace(configuration: &Configuration, text: &str, story: &Story) -> Resu
         }
         let solution = estimator.step(&pair);
         file.write(&solution).unwrap();
+        let since_ns = checkpoints.last().map_or(i64::MAX, |last| solution.header.time_ns - last.header.time_ns);
+        if solution.is_valid() && since_ns >= CHECKPOINT_NS {
+            checkpoints.push(solution);
+        }
         known.extend(identifier.step(&pair, &solution).map(|set| (set.id, set)));
     }
     let again = String::from_utf8(file.finish().unwrap()).unwrap();

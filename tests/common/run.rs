@@ -14,8 +14,8 @@ use std::path::PathBuf;
 /// - A source that is killed leaves a hole in the samples; the processes behind it live on. Its two units' samples of an instant are
 ///   published one after the other, so the first hole may have the one and not the other.
 /// - A synchroniser that is killed loses samples too, and the next one starts an epoch at the first sample that it gets.
-/// - An estimator that is killed loses pairs, and the next one starts with registering at the first pair that it gets, with the set
-///   of parameters that the rows name.
+/// - An estimator that is killed loses pairs, and the next one goes on at the first pair that it gets, from one of the last checkpoints, or
+///   by registering where there was none, with the set of parameters that the rows name.
 /// - An identifier that is killed costs no row. The next one's window begins with the first solution that it gets, which is the
 ///   length of a first window, or one or two periods more where that gave nothing, before its first set: one of those in force.
 /// - In a new domain everything starts anew, and what was under way in the old one is lost.
@@ -29,7 +29,10 @@ pub fn stories(stage: &str, replaced: bool, rows: &BTreeMap<u64, Row>, configura
     match stage {
         "simulate" | "replay" => vec![samples, Story { missing: Missing::SamplesButOne, ..samples }],
         "synchronise" => vec![Story { synchroniser: anew, ..samples }],
-        "estimate" => vec![Story { estimator: anew, ..Story::default() }],
+        "estimate" => {
+            let from = |checkpoint| Story { estimator: anew, checkpoint, ..Story::default() };
+            vec![from(Some(0)), from(Some(1)), from(None)]
+        }
         "identify" => {
             let told = &configuration.areas[0].identifier;
             let samples = |seconds: f64| (seconds * configuration.rate_hz).round() as u64;

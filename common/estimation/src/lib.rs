@@ -21,6 +21,9 @@ pub trait Estimator {
     fn offer(&mut self, params: FlexureParams);
     /// Handles one pair.
     fn step(&mut self, pair: &ImuPair) -> Solution;
+    /// Goes on from a solution that another estimator of the same run gave last, instead of registering; for before the first pair. One that cannot
+    /// registers all the same.
+    fn resume(&mut self, _last: &Solution) {}
 }
 
 /// The slow stage: now and then a parameter set.

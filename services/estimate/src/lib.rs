@@ -1,5 +1,8 @@
 //! `deckflex estimate`: one solution a pair, valid or not.
 
+mod checkpoint;
+
+use checkpoint::{Checkpoint, Keeper};
 use messages::{Flags, FlexureParams, ImuPair, Solution, Stage, topic};
 use pipeline::alarm::AlarmWatch;
 use pipeline::configuration::Configuration;
@@ -17,12 +20,23 @@ const NAP: Duration = Duration::from_millis(200);
 pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Result<(), TransportError> {
     let name = configuration.areas[area].name.as_str();
     let place = Area { index: area as u32, name };
+    let path = context.domain.join(format!("estimate_{area}.json"));
+    let before = if context.resume { Checkpoint::read(&path) } else { None };
+    // before the thread gets its class, or the other would have it too
+    let mut keeper = Keeper::start(path)?;
     let (stop, mut connection) = context.connect(Stage::Estimate, Some(place))?;
     let node = &connection.node;
     let pairs: Subscriber<ImuPair> = Subscriber::open(node, &topic::pair(name))?;
     let parameters: Subscriber<FlexureParams> = Subscriber::open(node, &topic::parameters(name))?;
     let solutions = Publisher::open(node, &topic::solution(name))?;
     let mut estimator = lane::estimator(configuration, area);
+    let mut offered = before.and_then(|before| before.parameters());
+    if let Some(before) = before {
+        estimator.resume(&before.solution());
+    }
+    if let Some(set) = offered {
+        estimator.offer(set);
+    }
     let mut sequence = Sequence::default();
     let mut alarms = AlarmWatch::new(configuration.areas[area].alarm.as_ref());
     let mut valid_ns = monotonic_ns();
@@ -38,6 +52,7 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
             }
             while let Some(set) = parameters.take()? {
                 estimator.offer(set);
+                offered = Some(set);
             }
             let mut solution = estimator.step(&pair);
             solution.header.stamps.solution_ns = monotonic_ns();
@@ -49,6 +64,7 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
             beat.health.late += u64::from(solution.flags.contains(Flags::LATE));
             beat.handled(&pair.header);
             alarms.see(&solution);
+            keeper.see(&solution, offered.as_ref());
             if solution.is_valid() {
                 valid_ns = solution.header.stamps.solution_ns;
             }

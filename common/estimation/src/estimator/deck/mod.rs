@@ -89,6 +89,8 @@ pub struct DeckEstimator {
     registered: Option<Registration>,
     registered_ns: i64,
     origin: Option<Origin>,
+    /// What an estimator that is gone said last.
+    last: Option<Solution>,
     live: Option<Box<Running>>,
     /// What the slow motion alone shows; only where the range reckons with what the waves hide.
     slow: Option<Box<Slow>>,
@@ -128,6 +130,7 @@ impl DeckEstimator {
             registered: None,
             registered_ns: i64::MIN,
             origin: None,
+            last: None,
             live: None,
             slow: None,
             shadow: None,
@@ -232,19 +235,25 @@ impl DeckEstimator {
         if pair.flags.contains(Flags::GAP) {
             return;
         }
+        if let Some(origin) = self.last.take().and_then(|last| Origin::resumed(&last, time_ns)) {
+            return self.start(origin, time_ns);
+        }
         match Origin::find(&self.settings, &self.registrar, self.delays.as_ref(), waited_s) {
             origin::Found::Nothing => {}
             origin::Found::Unobservable => self.news |= Flags::UNOBSERVABLE,
-            origin::Found::Start(origin) => {
-                (self.registered, self.registered_ns) = (origin.by_motion, time_ns);
-                self.origin = Some(*origin);
-                self.delays = None;
-                if !self.settings.replay {
-                    self.history.restart(time_ns);
-                }
-                self.run_again();
-            }
+            origin::Found::Start(origin) => self.start(*origin, time_ns),
         }
+    }
+
+    /// A first filter starts.
+    fn start(&mut self, origin: Origin, time_ns: i64) {
+        (self.registered, self.registered_ns) = (origin.by_motion, time_ns);
+        self.origin = Some(origin);
+        self.delays = None;
+        if !self.settings.replay {
+            self.history.restart(time_ns);
+        }
+        self.run_again();
     }
 
     /// A filter starts at the beginning of the history, with the parameters in force.
@@ -392,6 +401,10 @@ impl Estimator for DeckEstimator {
         if self.adoption.offer(params) {
             self.news |= Flags::LATE;
         }
+    }
+
+    fn resume(&mut self, last: &Solution) {
+        self.last = Some(*last);
     }
 
     fn step(&mut self, pair: &ImuPair) -> Solution {

@@ -7,8 +7,8 @@ use crate::flexure::Hull;
 use crate::matching::STATIC_RATE_SIGMA;
 use crate::matching::deck::{Covariance, Deck};
 use crate::matching::so3::{self, So3, place};
-use frames::{Vec3, unit};
-use messages::Flags;
+use frames::{Rot, Vec3, unit};
+use messages::{Flags, Solution};
 use nalgebra::{Matrix3, Vector3};
 
 /// Registration by motion takes at least so long, s.
@@ -19,6 +19,9 @@ const GOOD_REGISTRATION: f64 = 0.5 * unit::DEGREE;
 /// A flexure of more than this is not reckoned with at the start (17 arcmin, rad): a matching to 0.05 arcsec is linear in its errors to so much.
 /// With 34 arcmin one of eight starts on paper 003's ship was lost, with 69 three; from 10 to 34 the others gave the same results.
 const LARGEST_START: f64 = 0.005;
+
+/// What was known longer ago than this is not started from, s.
+const RESUMABLE_S: f64 = 600.0;
 
 /// Where a filter starts.
 #[derive(Clone, Copy, Debug)]
@@ -81,6 +84,26 @@ impl Origin {
             (None, None) if timed_out => Found::Unobservable,
             _ => Found::Nothing,
         }
+    }
+
+    /// A start from what an estimator that is gone said last; `None` if that is of no use by now. How the hull bends at the moment is not known any more.
+    pub fn resumed(last: &Solution, time_ns: i64) -> Option<Self> {
+        let passed_s = unit::seconds(time_ns.saturating_sub(last.header.time_ns));
+        if !last.is_valid() || !(0.0..RESUMABLE_S).contains(&passed_s) {
+            return None;
+        }
+        let wandered = (STATIC_RATE_SIGMA * passed_s).powi(2);
+        let covariance = Matrix3::from_row_slice(&last.static_covariance) + Matrix3::identity() * wandered;
+        let from = Registration {
+            rotation: Rot::from_wxyz(last.static_q),
+            covariance: covariance / REGISTRATION_DOUBT,
+            bias: Vec3::ZERO,
+            bias_sigma: Vector3::from_element(f64::INFINITY),
+            residual_rate: Vector3::zeros(),
+            ratio: 0.0,
+        };
+        let lag = (last.delay_sigma > 0.0).then_some(Lag { delay: last.delay, sigma: last.delay_sigma });
+        Some(Self { from, lag, by_motion: None, flags: Flags::empty() })
     }
 
     /// A broad guess of the flexure.
