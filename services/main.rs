@@ -108,6 +108,13 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
     },
+    /// Write a page with pictures and tables about a recorded run
+    Report {
+        recording: PathBuf,
+        /// The page; without it beside the recording, with the ending .html
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
     /// Tell the noise of a unit at rest by its Allan deviation, and the lines for the configuration
     Allan {
         /// A recording (CSV), or a configuration (.toml) whose units are recordings
@@ -275,6 +282,7 @@ fn main() -> ExitCode {
         Command::Acquire(args) => stage(&args, acquire::run),
         Command::Recover { recording, out } => recover(&recording, out.as_deref()),
         Command::Export { recording, out } => export(&recording, &out),
+        Command::Report { recording, out } => report(&recording, out.as_deref()),
         Command::Allan { file, unit, svg, json } => allan(&allan::Options { file, unit, svg, json }),
         Command::Compare { solution, reference, still, keep_fixed, from, json } => {
             let from = from.as_secs_f64();
@@ -312,6 +320,7 @@ fn failed(error: &(dyn Error + 'static)) -> ExitCode {
         || matches!(error.downcast_ref(), Some(record::RecordError::Configuration(_) | record::RecordError::Nowhere))
         || error.is::<recover::RecoverError>()
         || error.is::<export::ExportError>()
+        || error.downcast_ref().is_some_and(report::ReportError::is_unusable)
         || error.is::<NoFolder>()
         || matches!(error.downcast_ref(), Some(error) if allan::AllanError::is_unusable(error))
         || matches!(error.downcast_ref(), Some(error) if compare::CompareError::is_unusable(error))
@@ -403,6 +412,11 @@ fn recover(recording: &std::path::Path, out: Option<&std::path::Path>) -> Outcom
 
 fn export(recording: &std::path::Path, out: &std::path::Path) -> Outcome {
     print!("{}", export::run(recording, out)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn report(recording: &std::path::Path, out: Option<&std::path::Path>) -> Outcome {
+    print!("{}", report::run(recording, out)?);
     Ok(ExitCode::SUCCESS)
 }
 
