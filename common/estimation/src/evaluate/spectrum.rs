@@ -37,8 +37,8 @@ impl Spectrum {
     /// fast and is undone here. `None` if no piece is long enough.
     pub fn welch(pieces: &[&[f64]], step_s: f64, mean_of: usize) -> Option<Self> {
         let longest = pieces.iter().map(|piece| piece.len()).max()?;
-        let length = 1 << (longest / STRETCHES).min(LONGEST).max(1).ilog2();
-        if length < LEAST || !(step_s > 0.0) {
+        let length = 1 << (longest / STRETCHES).clamp(1, LONGEST).ilog2();
+        if length < LEAST || step_s.is_nan() || step_s <= 0.0 {
             return None;
         }
         let weights: Vec<f64> = (0..length).map(|j| (PI * (j as f64 + 0.5) / length as f64).sin().powi(2)).collect();

@@ -29,9 +29,9 @@ impl Stretch {
         }
         let mean = series.iter().map(|(_, value)| value).sum::<f64>() / count as f64;
         let square = series.iter().map(|(_, value)| (value - mean).powi(2)).sum::<f64>() / count as f64;
-        let (least, most) = series.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &(_, value)| {
-            (least.min(value), most.max(value))
-        });
+        let (least, most) = series
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), &(_, value)| (least.min(value), most.max(value)));
         let deviation = square.sqrt();
         let period_s = period(series, mean, UNDER * deviation, hole_s);
         Some(Self { count, mean, deviation, least, most, period_s })
