@@ -99,7 +99,7 @@ fn numbers(area: &AreaRun) -> Table {
     .words(2);
     let every = area.sets.len().div_ceil(ROWS / 3).max(1);
     let last = area.sets.len().saturating_sub(1);
-    for (i, (from_s, set)) in area.sets.iter().enumerate().filter(|(i, _)| (last - i) % every == 0) {
+    for (i, (from_s, set)) in area.sets.iter().enumerate().filter(|(i, _)| (last - i).is_multiple_of(every)) {
         let window_s = unit::seconds(set.header.time_ns.saturating_sub(set.window_begin_ns));
         for axis in [0, 1, 2] {
             let doubted = |value: f64, ln_sd: f64| format!("{} ± {}", digits(value), digits(value * ln_sd));

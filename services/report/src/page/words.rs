@@ -43,7 +43,7 @@ pub fn count(count: u64) -> String {
 
 /// A share in percent.
 pub fn percent(share: f64) -> String {
-    let decimals = if share > 0.9995 || share < 0.0005 { 2 } else { 1 };
+    let decimals = if (0.0005..=0.9995).contains(&share) { 1 } else { 2 };
     let text = format!("{:.decimals$}", 100.0 * share);
     let text = if share == 1.0 || share == 0.0 { format!("{:.0}", 100.0 * share) } else { text };
     if share > 0.0 && share < 5e-5 {
