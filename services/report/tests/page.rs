@@ -103,7 +103,7 @@ fn what_is_lost_is_told() {
     let text = page(&records, Some(Ending { end_of_run: true, dropped: 12, lost: 1 }));
     for words in [
         "12 messages are in no file, because the disk was full or too slow, and 1 did not reach the recorder.",
-        "synchronise of radar was started again, 1 times.",
+        "synchronise of radar was started again once.",
         "synchronise of radar: 6 samples were missing",
         "3 solutions of area radar are missing in their sequence.",
         "recorded from 2023-11-14 22:13:20",

@@ -76,7 +76,7 @@ pub fn range(area: &AreaRun, length_s: f64) -> Section {
     }
     let about = format!("Range of area {} against time", area.name);
     let chart = Chart::of_time(about, length_s, signs, vec![panel]);
-    let note = "So far the deformation may be off, 95 % of the time.";
+    let note = "The deformation is to be off by no more than this 95 % of the time.";
     let numbers = table(&area.range, ["x", "y", "z"], 3).folded("Numbers of this plot: half width, arcmin");
     Section::new(title, note, html! { (chart.draw()) (numbers) })
 }

@@ -104,8 +104,10 @@ fn losses(run: &Run) -> Vec<(&'static str, String)> {
         ));
     }
     for (topic, stage) in &run.stages {
-        if stage.restarts() > 0 {
-            said.push(("bad", format!("{} was started again, {} times.", role(topic), stage.restarts())));
+        match stage.restarts() {
+            0 => {}
+            1 => said.push(("bad", format!("{} was started again once.", role(topic)))),
+            times => said.push(("bad", format!("{} was started again {times} times.", role(topic)))),
         }
         let told = stage.troubles().map(|total| format!("{}: {} {}.", role(topic), count(total.count), total.said));
         said.extend(told.map(|sentence| ("warn", sentence)));
