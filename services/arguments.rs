@@ -83,6 +83,13 @@ pub enum Command {
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
     },
+    /// Write a page with pictures and tables about a recorded run
+    Report {
+        recording: PathBuf,
+        /// The page; without it beside the recording, with the ending .html
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
+    },
     /// Tell the noise of a unit at rest by its Allan deviation, and the lines for the configuration
     Allan {
         /// A recording (CSV), or a configuration (.toml) whose units are recordings

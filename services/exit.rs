@@ -28,6 +28,7 @@ pub fn failed(error: &(dyn Error + 'static)) -> ExitCode {
         || matches!(error.downcast_ref(), Some(record::RecordError::Configuration(_) | record::RecordError::Nowhere))
         || error.is::<recover::RecoverError>()
         || error.is::<export::ExportError>()
+        || error.downcast_ref().is_some_and(report::ReportError::is_unusable)
         || matches!(error.downcast_ref(), Some(error) if allan::AllanError::is_unusable(error))
         || matches!(error.downcast_ref(), Some(error) if compare::CompareError::is_unusable(error))
         || matches!(error.downcast_ref(), Some(monitor::MonitorError::Configuration(_)))

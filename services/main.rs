@@ -34,6 +34,7 @@ fn main() -> ExitCode {
         Command::Simulate(args) => simulate(args),
         Command::Acquire(args) => stage(&args, acquire::run),
         Command::Recover { recording, out } => recover(&recording, out.as_deref()),
+        Command::Report { recording, out } => report(&recording, out.as_deref()),
         Command::Export { recording, out } => export(&recording, &out),
         Command::Allan { file, unit, svg, json } => allan(&allan::Options { file, unit, svg, json }),
         Command::Compare { solution, reference, still, keep_fixed, from, json } => {
@@ -123,6 +124,11 @@ fn recover(recording: &Path, out: Option<&Path>) -> Outcome {
 
 fn export(recording: &Path, out: &Path) -> Outcome {
     print!("{}", export::run(recording, out)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+fn report(recording: &Path, out: Option<&Path>) -> Outcome {
+    print!("{}", report::run(recording, out)?);
     Ok(ExitCode::SUCCESS)
 }
 

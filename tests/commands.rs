@@ -161,6 +161,7 @@ fn help_names_every_command() {
         "bound",
         "recover",
         "export",
+        "report",
         "simulate",
         "replay",
         "synchronise",

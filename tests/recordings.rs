@@ -4,6 +4,7 @@
 mod common;
 
 use common::launch::{Ended, Launch, of_stage, one_at_a_time, send};
+use common::page::{assert_sound, number, section};
 use common::{Place, configuration, demo, first_difference, offline, recorded};
 use libc::SIGKILL;
 use pipeline::configuration::Configuration;
@@ -103,6 +104,7 @@ fn a_recorded_run_gives_its_solutions_again() {
     );
     assert_whole(&read(file), &live, &path);
     exports(&place, file, &live);
+    reports(&place, file, &live);
 }
 
 /// Everything that the run made stands in the recording.
@@ -139,6 +141,47 @@ fn exports(place: &Place, file: &Path, live: &Ended) {
     let path = place.write("exported.toml", &text);
     let exported = offline(&configuration(&path, 2.0)).0;
     assert_eq!(exported.lines().count(), 202);
+}
+
+/// The page about the run holds the figures of its solutions and needs nothing but itself; one about half of the recording says that it is half.
+fn reports(place: &Place, file: &Path, live: &Ended) {
+    let report = |file: &Path, name: &str| {
+        let out = place.path(name);
+        let said = told(&deckflex(place, &["report", file.to_str().unwrap(), "--out", out.to_str().unwrap()]));
+        (fs::read_to_string(out).unwrap(), said)
+    };
+    let (page, said) = report(file, "report.html");
+    assert!(said.contains("area radar: 901 solutions"), "{said}");
+    assert_sound(&page);
+    assert!(page.contains("no message of it is missing"));
+    let statistics = section(&page, "Statistics per 10 minutes");
+    let solutions = live.solutions("radar");
+    let mut rows = solutions.lines().map(|row| row.split(',').collect::<Vec<&str>>());
+    let head = rows.next().unwrap();
+    let valid: Vec<Vec<&str>> = rows.filter(|row| row[1] == "1").collect();
+    for axis in ["x", "y", "z"] {
+        let column = head.iter().position(|name| *name == format!("phi_{axis}_arcsec")).unwrap();
+        let values: Vec<f64> = valid.iter().map(|row| row[column].parse::<f64>().unwrap() / 60.0).collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
+        let (least, most) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
+        let figures = [mean, square.sqrt(), least, most].map(|value| number(value, 3));
+        let cells = figures.map(|figure| format!("<td class=\"number\">{figure}</td>")).concat();
+        assert!(statistics.contains(&cells), "{axis}: {cells} is not in {statistics}");
+    }
+    let summary: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(live.out.join("summary.json")).unwrap()).unwrap();
+    let rmse = summary["areas"][0]["rmse_arcsec"][2].as_f64().unwrap() / 60.0;
+    assert!(section(&page, "Error against the truth").contains(&number(rmse, 3)));
+    assert!(section(&page, "Latency").contains("end to end"));
+    assert!(section(&page, "Alarms").contains("sets no limits"));
+    assert!(section(&page, "Spectrum").contains("Too short") && section(&page, "Delay").contains("No delay"));
+    let half = place.folder("half").join("run_000.mcap");
+    let bytes = fs::read(file).unwrap();
+    fs::write(&half, &bytes[..bytes.len() / 2]).unwrap();
+    let (page, _) = report(&half, "half.html");
+    assert_sound(&page);
+    assert!(page.contains("The recording is cut at the end of run_000.mcap") && !page.contains("no message of it"));
 }
 
 /// The recorded run as the source of another configuration, and of another launch.
@@ -310,7 +353,12 @@ fn what_cannot_be_recorded_or_read_is_told_before_anything_starts() {
     let file = file.to_str().unwrap();
     let out = place.path("out");
     let out = out.to_str().unwrap();
-    for arguments in [&["recover", file][..], &["export", file, "--out", out], &["process", file, "--out", out]] {
+    for arguments in [
+        &["recover", file][..],
+        &["export", file, "--out", out],
+        &["process", file, "--out", out],
+        &["report", file, "--out", out],
+    ] {
         let output = deckflex(&place, arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
         assert!(

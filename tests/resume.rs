@@ -64,10 +64,10 @@ fn after(seed: u64) -> After {
             } else if solution.is_valid() {
                 after.first_s.get_or_insert(time_s);
                 let error = deformation_error(&solution, &batch.truth[0]).array();
-                for axis in 0..3 {
+                for (axis, error) in error.map(f64::abs).into_iter().enumerate() {
                     after.solutions += 1;
-                    after.in_range += usize::from(error[axis].abs() <= solution.range[axis]);
-                    after.farthest = after.farthest.max(error[axis].abs() / solution.covariance[axis * 4].sqrt());
+                    after.in_range += usize::from(error <= solution.range[axis]);
+                    after.farthest = after.farthest.max(error / solution.covariance[axis * 4].sqrt());
                 }
             }
         }

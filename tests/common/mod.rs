@@ -3,6 +3,7 @@
 
 pub mod comparison;
 pub mod launch;
+pub mod page;
 pub mod receiver;
 pub mod retrace;
 pub mod run;

@@ -45,9 +45,43 @@ bitflags::bitflags! {
 }
 
 impl Flags {
+    /// What each flag says to a watch, the gravest first.
+    pub const SENTENCES: [(Self, &str); 19] = [
+        (Self::REGISTERING, "The installation is still being found from the ship's motion: no solution yet."),
+        (Self::UNOBSERVABLE, "The motion does not show the installation on every axis; more roll or pitch is needed."),
+        (Self::SILENT, "The area's unit gives no data: look at its cable, power and port."),
+        (Self::GAP, "Data of a unit are missing at this instant."),
+        (Self::COASTING, "The output is a prediction, because no data came."),
+        (Self::STUCK, "A gyro gives the same value all the time: its unit may be broken."),
+        (Self::ACCEL_STUCK, "An accelerometer gives the same value all the time; the gyros are still used."),
+        (Self::SATURATED, "A sensor is at the end of its measuring range."),
+        (Self::NOT_FINITE, "A unit sent values that are no numbers; they count as lost."),
+        (Self::TIME_BACK, "A unit's clock jumped back."),
+        (Self::INCONSISTENT, "The data disagree with the filter; the range has been widened by as much."),
+        (Self::RESET, "The filter met numbers that it could not use and started anew."),
+        (Self::NEW_EPOCH, "The chain of attitudes started anew."),
+        (Self::SPIKE, "A value far off was replaced by what its neighbours say."),
+        (Self::BRIDGED, "A few lost samples were bridged."),
+        (Self::LATE, "A flexure model came later than it should have."),
+        (Self::PRIOR, "The flexure model is still the first guess, not learnt from this ship."),
+        (Self::INSTALLATION, "The filter started from the configured installation, not from the motion."),
+        (Self::INTERPOLATED, "The area's unit is read between its samples, as its clock asks."),
+    ];
+
     /// The names of the flags that are set, lower case, joined by `|`.
     pub fn names(self) -> String {
         let names: Vec<String> = self.iter_names().map(|(name, _)| name.to_lowercase()).collect();
         names.join("|")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_flag_has_one_sentence() {
+        let all = Flags::SENTENCES.iter().fold(Flags::empty(), |all, (flag, _)| all | *flag);
+        assert_eq!((all, Flags::SENTENCES.len()), (Flags::all(), Flags::all().iter().count()));
     }
 }

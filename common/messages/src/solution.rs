@@ -51,6 +51,9 @@ pub struct Solution {
     pub deck: [f64; 4],
     /// Standard deviation of the error of `deck` about east, north, up, rad.
     pub deck_sigma: [f64; 3],
+    /// Mean of the filter's squared innovations in terms of their variance over the last minute: 1 is expected, less says that the filter is
+    /// cautious; 0 where it is not told.
+    pub nis: f64,
     /// Index of the area.
     pub area: u32,
     /// 1 when the deformation may be used.
@@ -61,7 +64,7 @@ pub struct Solution {
     pub reserved: u32,
 }
 
-message!(Solution, "deckflex/Solution/2");
+message!(Solution, "deckflex/Solution/3");
 
 impl Solution {
     /// Whether the deformation may be used.

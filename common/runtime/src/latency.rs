@@ -72,6 +72,18 @@ impl Latency {
         }
     }
 
+    /// How many lie from each edge (ns, ascending) up to the next one; those before the first or from the last on stand in no place.
+    pub fn counts(&self, edges_ns: &[u64]) -> Vec<u64> {
+        let mut counts = vec![0; edges_ns.len().saturating_sub(1)];
+        for recorded in self.histogram.iter_recorded() {
+            let above = edges_ns.partition_point(|edge| *edge <= recorded.value_iterated_to());
+            if let Some(count) = above.checked_sub(1).and_then(|place| counts.get_mut(place)) {
+                *count += recorded.count_at_value();
+            }
+        }
+        counts
+    }
+
     /// Adds what another histogram holds.
     pub fn add(&mut self, other: &Self) {
         // Cannot fail: both have the same bounds.
@@ -211,6 +223,14 @@ mod tests {
         a.add(&b);
         assert_eq!((a.summary().count, a.summary().out_of_range), (3, 1));
         assert!(close(a.summary().max_us, 3000.0));
+    }
+
+    #[test]
+    fn latencies_are_counted_between_edges() {
+        let mut latency = Latency::new();
+        [500, 1_500, 1_600, 2_500, 9_000].into_iter().for_each(|ns| latency.record(ns));
+        assert_eq!(latency.counts(&[1_000, 2_000, 3_000, 4_000]), [2, 1, 0]);
+        assert_eq!(latency.counts(&[]), []);
     }
 
     #[test]

@@ -7,17 +7,21 @@
 //! | assumed coherence of flexure and ship, unit-consistent | [`Coherence`] |
 //! | the coherence that the data show | [`Observed`] |
 //!
-//! And how far it was off, where a reference is known: [`against`].
+//! And how far it was off, where a reference is known: [`against`]. What a recording of it shows afterwards: [`Stretch`], [`Spectrum`].
 
 pub mod against;
 mod coherence;
 mod error_range;
 mod observed;
+mod spectrum;
+mod stretch;
 mod window;
 
 pub use coherence::Coherence;
 pub use error_range::ErrorRange;
 pub use observed::Observed;
+pub use spectrum::{Band, Spectrum};
+pub use stretch::Stretch;
 
 use frames::{Main, Vec3};
 use nalgebra::{Matrix3, Vector3};

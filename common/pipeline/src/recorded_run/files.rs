@@ -48,6 +48,7 @@ pub struct Files {
     ending: Option<Ending>,
     cuts: Vec<(PathBuf, String)>,
     unreadable: u64,
+    recorded_ns: u64,
 }
 
 impl Files {
@@ -58,7 +59,7 @@ impl Files {
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let (reader, about) = open(path)?;
         let (path, further) = (path.to_path_buf(), further(path));
-        Ok(Self { reader, about, path, further, ending: None, cuts: Vec::new(), unreadable: 0 })
+        Ok(Self { reader, about, path, further, ending: None, cuts: Vec::new(), unreadable: 0, recorded_ns: 0 })
     }
 
     /// What the first file says about itself.
@@ -79,6 +80,11 @@ impl Files {
     /// Messages that cannot be read.
     pub fn unreadable(&self) -> u64 {
         self.unreadable
+    }
+
+    /// When the last message that was given was recorded, ns since 1970; 0 before there is one.
+    pub fn recorded_ns(&self) -> u64 {
+        self.recorded_ns
     }
 
     /// Goes on in the next file of the run; `false` if there is none.
@@ -110,7 +116,10 @@ impl Iterator for Files {
         loop {
             match self.reader.next() {
                 Some(Event::Message(message)) => match message.record() {
-                    Ok(Some(record)) => return Some((message.channel.topic.clone(), record)),
+                    Ok(Some(record)) => {
+                        self.recorded_ns = message.log_time;
+                        return Some((message.channel.topic.clone(), record));
+                    }
                     // a topic of somebody else
                     Ok(None) => {}
                     Err(_) => self.unreadable += 1,

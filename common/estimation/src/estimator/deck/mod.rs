@@ -365,6 +365,7 @@ impl DeckEstimator {
         solution.rate = rate.array();
         solution.drift = drift.array();
         solution.scale = so3.scale();
+        solution.nis = running.surprise().mean();
         solution.covariance = row_major(&covariance);
         solution.static_covariance = row_major(&static_covariance);
         solution.dynamic_covariance = row_major(&((dynamic_rows * p * dynamic_rows.transpose() + noise) * excess));

@@ -20,6 +20,11 @@ impl Surprise {
         self.mean += (square - self.mean) * self.weight;
     }
 
+    /// The mean.
+    pub fn mean(&self) -> f64 {
+        self.mean
+    }
+
     /// By how much the covariance is too small; 1 where nothing says so.
     pub fn excess(&self) -> f64 {
         if self.mean > self.largest { self.mean } else { 1.0 }
