@@ -44,8 +44,8 @@ macro_rules! records {
                 match self { $(Self::$variant(_) => name_of::<$type>()),* }
             }
 
-            /// Its schema, a set of file descriptors.
-            pub(crate) fn schema(&self) -> Vec<u8> {
+            /// Its schema, a serialised set of Protocol Buffers' file descriptors.
+            pub fn schema(&self) -> Vec<u8> {
                 match self { $(Self::$variant(_) => schema::<$type>()),* }
             }
 

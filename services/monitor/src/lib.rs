@@ -1,7 +1,6 @@
 //! `deckflex monitor`: a page in the terminal that looks at a running launch.
 
 mod draw;
-mod launches;
 mod marks;
 mod page;
 mod ports;
@@ -11,11 +10,10 @@ mod words;
 pub use draw::draw;
 pub use page::{AreaState, Delays, Link, Page, Past, StageState};
 
-use launches::Launch;
 use pipeline::configuration::ConfigurationError;
 use ports::Ports;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
-use runtime::{Stop, TransportError, monotonic_ns};
+use runtime::{Lookout, Stop, TransportError, monotonic_ns};
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -70,7 +68,8 @@ pub fn run(options: &Options) -> Result<(), MonitorError> {
 }
 
 fn show(options: &Options, stop: &Stop, terminal: &mut ratatui::DefaultTerminal) -> Result<(), MonitorError> {
-    let mut watch = Watch { options, page: Page::waiting(waiting(options)), ports: None, seen: None, looked_ns: 0 };
+    let lookout = Lookout::new(options.configuration.as_deref());
+    let mut watch = Watch { options, page: Page::waiting(waiting(options)), ports: None, lookout, looked_ns: 0 };
     while !stop.requested() {
         watch.update(monotonic_ns());
         terminal.draw(|frame| draw(frame, &watch.page, monotonic_ns()))?;
@@ -95,8 +94,7 @@ struct Watch<'a> {
     options: &'a Options,
     page: Page,
     ports: Option<Ports>,
-    /// A launch that was there at the last look.
-    seen: Option<Launch>,
+    lookout: Lookout,
     looked_ns: i64,
 }
 
@@ -123,24 +121,14 @@ impl Watch<'_> {
         }
     }
 
-    /// To a launch that was there at the last look already: at its very start its topics are still being made, and who is killed while
-    /// it makes one spoils it for all.
     fn attach(&mut self) {
-        let found = match launches::find(self.options.configuration.as_deref()) {
-            Ok(found) => found,
-            Err(error) => {
-                self.page = Page::waiting(format!("Cannot look for launches: {error}."));
-                return;
-            }
-        };
-        let known = self.seen.as_ref().is_some_and(|seen| found.contains(seen));
-        if let (true, Some(launch)) = (known, &self.seen) {
-            match Ports::open(launch) {
+        match self.lookout.look() {
+            Ok(Some(launch)) => match Ports::open(&launch) {
                 Ok((ports, page)) => (self.ports, self.page) = (Some(ports), page),
                 Err(error) => self.page = Page::waiting(format!("Cannot attach to the launch: {error}.")),
-            }
-        } else {
-            self.seen = found.into_iter().next();
+            },
+            Ok(None) => {}
+            Err(error) => self.page = Page::waiting(format!("Cannot look for launches: {error}.")),
         }
     }
 

@@ -1,16 +1,14 @@
 //! The page's readers in the domain of a launch.
 
 use crate::MonitorError;
-use crate::launches::Launch;
 use crate::page::Page;
 use messages::{FlexureParams, Health, Solution, topic};
 use pipeline::configuration::Configuration;
-use runtime::{Domain, Node, Subscriber, TransportError, monotonic_ns};
-use std::path::PathBuf;
+use runtime::{Domain, Launch, Node, Subscriber, TransportError, monotonic_ns};
 
 /// The readers.
 pub struct Ports {
-    root: PathBuf,
+    launch: Launch,
     areas: Vec<(Subscriber<Solution>, Subscriber<FlexureParams>)>,
     health: Vec<Subscriber<Health>>,
     _node: Node,
@@ -37,7 +35,7 @@ impl Ports {
             Subscriber::open(&node, &topic::health(stage.stage, stage.area.map(|area| names[area])))
         };
         let health = page.stages.iter().map(of_stage).collect::<Result<_, _>>()?;
-        Ok((Self { root: launch.root.clone(), areas, health, _node: node }, page))
+        Ok((Self { launch: launch.clone(), areas, health, _node: node }, page))
     }
 
     /// Takes in everything that has come.
@@ -63,6 +61,6 @@ impl Ports {
 
     /// Whether the launch still runs.
     pub fn is_alive(&self) -> bool {
-        Domain::open(&self.root).is_ok()
+        self.launch.is_alive()
     }
 }
