@@ -154,6 +154,15 @@ enum Command {
         #[arg(long, value_name = "FILE", default_value = "events.csv")]
         events: PathBuf,
     },
+    /// Show a running launch to viewers that speak the Foxglove WebSocket
+    #[cfg(feature = "foxglove")]
+    Live {
+        /// The configuration whose launch is meant; without it the one that runs
+        configuration: Option<PathBuf>,
+        /// Where viewers connect; port 0 takes a free one
+        #[arg(long, value_name = "ADDR:PORT", default_value = "127.0.0.1:8765")]
+        listen: std::net::SocketAddr,
+    },
     /// Stage: recorded units (started by launch)
     Replay(StageArgs),
     /// Stage: one area's samples onto the main unit's instants (started by launch)
@@ -282,6 +291,8 @@ fn main() -> ExitCode {
         }
         Command::Doctor { configuration } => doctor(configuration.as_deref()),
         Command::Monitor { configuration, events } => monitor(&monitor::Options { configuration, events }),
+        #[cfg(feature = "foxglove")]
+        Command::Live { configuration, listen } => live(&live::Options { configuration, listen }),
         Command::Replay(args) => stage(&args, replay::run),
         Command::Synchronise(args) => of_area(&args, synchronise::run),
         Command::Estimate(args) => of_area(&args, estimate::run),
@@ -436,6 +447,15 @@ fn doctor(configuration: Option<&std::path::Path>) -> Outcome {
 
 fn monitor(options: &monitor::Options) -> Outcome {
     monitor::run(options)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+#[cfg(feature = "foxglove")]
+fn live(options: &live::Options) -> Outcome {
+    let report = live::run(options, |line| {
+        let _ = writeln!(std::io::stderr(), "deckflex live: {line}");
+    })?;
+    println!("{report}");
     Ok(ExitCode::SUCCESS)
 }
 
