@@ -153,6 +153,9 @@ enum Command {
         /// Where events go that are marked with the key e
         #[arg(long, value_name = "FILE", default_value = "events.csv")]
         events: PathBuf,
+        /// Where it is told which zeros were taken with the key z
+        #[arg(long, value_name = "FILE", default_value = "zeros.csv")]
+        zeros: PathBuf,
     },
     /// Show a running launch to viewers that speak the Foxglove WebSocket
     #[cfg(feature = "foxglove")]
@@ -290,7 +293,9 @@ fn main() -> ExitCode {
             compare(&compare::Options { solution, reference, still, keep_fixed, from, json })
         }
         Command::Doctor { configuration } => doctor(configuration.as_deref()),
-        Command::Monitor { configuration, events } => monitor(&monitor::Options { configuration, events }),
+        Command::Monitor { configuration, events, zeros } => {
+            monitor(&monitor::Options { configuration, events, zeros })
+        }
         #[cfg(feature = "foxglove")]
         Command::Live { configuration, listen } => live(&live::Options { configuration, listen }),
         Command::Replay(args) => stage(&args, replay::run),

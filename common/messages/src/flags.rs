@@ -41,6 +41,8 @@ bitflags::bitflags! {
         const ACCEL_STUCK = 1 << 17;
         /// The data disagree with the filter by more than its covariance allows; the published covariance is widened by as much.
         const INCONSISTENT = 1 << 18;
+        /// The deformation and the deck's attitude are those of the sub unit's axes turned by the configured zero.
+        const ZEROED = 1 << 19;
     }
 }
 

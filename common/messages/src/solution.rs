@@ -51,6 +51,8 @@ pub struct Solution {
     pub deck: [f64; 4],
     /// Standard deviation of the error of `deck` about east, north, up, rad.
     pub deck_sigma: [f64; 3],
+    /// Rotation vector of the zero in force: `q` and `deck` are `C Exp(zero)^T` of what was estimated, and so is the static part; rad.
+    pub zero: [f64; 3],
     /// Index of the area.
     pub area: u32,
     /// 1 when the deformation may be used.
@@ -61,7 +63,7 @@ pub struct Solution {
     pub reserved: u32,
 }
 
-message!(Solution, "deckflex/Solution/2");
+message!(Solution, "deckflex/Solution/3");
 
 impl Solution {
     /// Whether the deformation may be used.

@@ -22,7 +22,7 @@ structure!(Adoption { 1 header, 2 params_id, 3 area, 4 late });
 structure!(Solution {
     1 header, 2 params_id, 3 epoch, 4 q, 5 static_q, 6 constant, 7 phi, 8 dynamic, 9 rate, 10 drift, 11 scale, 12 covariance,
     13 static_covariance, 14 dynamic_covariance, 15 registered, 16 registered_sigma, 17 delay, 18 delay_sigma, 19 skew,
-    20 skew_sigma, 21 range, 22 deck, 23 deck_sigma, 24 area, 25 valid, 26 flags
+    20 skew_sigma, 21 range, 22 deck, 23 deck_sigma, 24 area, 25 valid, 26 flags, 27 zero
 } left out { reserved });
 structure!(Truth { 1 header, 2 q, 3 static_q, 4 dynamic, 5 ship, 6 area } left out { reserved });
 structure!(Health {

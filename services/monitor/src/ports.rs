@@ -5,10 +5,12 @@ use crate::page::Page;
 use messages::{FlexureParams, Health, Solution, topic};
 use pipeline::configuration::Configuration;
 use runtime::{Domain, Launch, Node, Subscriber, TransportError, monotonic_ns};
+use std::path::Path;
 
 /// The readers.
 pub struct Ports {
     launch: Launch,
+    recorded: bool,
     areas: Vec<(Subscriber<Solution>, Subscriber<FlexureParams>)>,
     health: Vec<Subscriber<Health>>,
     _node: Node,
@@ -35,7 +37,8 @@ impl Ports {
             Subscriber::open(&node, &topic::health(stage.stage, stage.area.map(|area| names[area])))
         };
         let health = page.stages.iter().map(of_stage).collect::<Result<_, _>>()?;
-        Ok((Self { launch: launch.clone(), areas, health, _node: node }, page))
+        let recorded = configuration.as_recorded;
+        Ok((Self { launch: launch.clone(), recorded, areas, health, _node: node }, page))
     }
 
     /// Takes in everything that has come.
@@ -57,6 +60,11 @@ impl Ports {
             }
         }
         Ok(())
+    }
+
+    /// The configuration of the launch; `None` where it is a recorded run.
+    pub fn configuration(&self) -> Option<&Path> {
+        (!self.recorded).then_some(self.launch.configuration.as_path())
     }
 
     /// Whether the launch still runs.

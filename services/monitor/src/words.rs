@@ -3,7 +3,7 @@
 use messages::{Flags, Health, Solution};
 
 /// What each flag says to a watch.
-const SENTENCES: [(Flags, &str); 19] = [
+const SENTENCES: [(Flags, &str); 20] = [
     (Flags::REGISTERING, "The installation is still being found from the ship's motion: no solution yet."),
     (Flags::UNOBSERVABLE, "The motion does not show the installation on every axis; more roll or pitch is needed."),
     (Flags::SILENT, "The area's unit gives no data: look at its cable, power and port."),
@@ -22,6 +22,7 @@ const SENTENCES: [(Flags, &str); 19] = [
     (Flags::LATE, "A flexure model came later than it should have."),
     (Flags::PRIOR, "The flexure model is still the first guess, not learnt from this ship."),
     (Flags::INSTALLATION, "The filter started from the configured installation, not from the motion."),
+    (Flags::ZEROED, "A zero is in force: the deformation is told from where it was zeroed."),
     (Flags::INTERPOLATED, "The area's unit is read between its samples, as its clock asks."),
 ];
 
