@@ -239,6 +239,9 @@ struct WireArgs {
     /// By how much the main unit's clock is fast and the others' are slow
     #[arg(long, requires = "wire", value_name = "PPM", default_value_t = 50.0, allow_negative_numbers = true)]
     skew_ppm: f64,
+    /// The INS tells UTC, ahead of the host's by so much
+    #[arg(long, requires = "wire", value_name = "TIME", value_parser = humantime::parse_duration)]
+    utc_ahead: Option<Duration>,
     /// Format of KVH units
     #[arg(long, requires = "wire", default_value = "b")]
     kvh_format: KvhFormat,
@@ -492,6 +495,7 @@ fn emulate(path: &std::path::Path, duration: Option<Duration>, wires: WireArgs) 
         jitter_s: wires.jitter.as_secs_f64(),
         latency_s: wires.latency.as_secs_f64(),
         skew: wires.skew_ppm * 1e-6,
+        utc_ahead_s: wires.utc_ahead.map(|ahead| ahead.as_secs_f64()),
         kvh_format: match wires.kvh_format {
             KvhFormat::A => simulate::KvhFormat::A,
             KvhFormat::B => simulate::KvhFormat::B,
