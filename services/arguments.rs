@@ -135,6 +135,18 @@ pub enum Command {
         /// Where events go that are marked with the key e
         #[arg(long, value_name = "FILE", default_value = "events.csv")]
         events: PathBuf,
+        /// Where it is told which zeros were taken with the key z
+        #[arg(long, value_name = "FILE", default_value = "zeros.csv")]
+        zeros: PathBuf,
+    },
+    /// Show a running launch to viewers that speak the Foxglove WebSocket
+    #[cfg(feature = "foxglove")]
+    Live {
+        /// The configuration whose launch is meant; without it the one that runs
+        configuration: Option<PathBuf>,
+        /// Where viewers connect; port 0 takes a free one
+        #[arg(long, value_name = "ADDR:PORT", default_value = "127.0.0.1:8765")]
+        listen: std::net::SocketAddr,
     },
     /// Stage: recorded units (started by launch)
     Replay(StageArgs),
@@ -233,6 +245,9 @@ pub struct WireArgs {
     /// By how much the main unit's clock is fast and the others' are slow
     #[arg(long, requires = "wire", value_name = "PPM", default_value_t = 50.0, allow_negative_numbers = true)]
     pub skew_ppm: f64,
+    /// The INS tells UTC, ahead of the host's by so much
+    #[arg(long, requires = "wire", value_name = "TIME", value_parser = humantime::parse_duration)]
+    pub utc_ahead: Option<Duration>,
     /// Format of KVH units
     #[arg(long, requires = "wire", default_value = "b")]
     pub kvh_format: KvhFormat,

@@ -42,7 +42,11 @@ fn main() -> ExitCode {
             compare(&compare::Options { solution, reference, still, keep_fixed, from, json })
         }
         Command::Doctor { configuration } => doctor(configuration.as_deref()),
-        Command::Monitor { configuration, events } => monitor(&monitor::Options { configuration, events }),
+        Command::Monitor { configuration, events, zeros } => {
+            monitor(&monitor::Options { configuration, events, zeros })
+        }
+        #[cfg(feature = "foxglove")]
+        Command::Live { configuration, listen } => live(&live::Options { configuration, listen }),
         Command::Replay(args) => stage(&args, replay::run),
         Command::Synchronise(args) => of_area(&args, synchronise::run),
         Command::Estimate(args) => of_area(&args, estimate::run),
@@ -165,6 +169,15 @@ fn monitor(options: &monitor::Options) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
+#[cfg(feature = "foxglove")]
+fn live(options: &live::Options) -> Outcome {
+    let report = live::run(options, |line| {
+        let _ = writeln!(std::io::stderr(), "deckflex live: {line}");
+    })?;
+    println!("{report}");
+    Ok(ExitCode::SUCCESS)
+}
+
 fn stage<E: Into<Box<dyn Error>>>(
     args: &StageArgs,
     run: impl Fn(&Configuration, &Context) -> Result<(), E>,
@@ -185,6 +198,7 @@ fn emulate(path: &Path, duration: Option<Duration>, wires: WireArgs) -> Outcome 
         jitter_s: wires.jitter.as_secs_f64(),
         latency_s: wires.latency.as_secs_f64(),
         skew: wires.skew_ppm * 1e-6,
+        utc_ahead_s: wires.utc_ahead.map(|ahead| ahead.as_secs_f64()),
         kvh_format: match wires.kvh_format {
             KvhFormat::A => simulate::KvhFormat::A,
             KvhFormat::B => simulate::KvhFormat::B,

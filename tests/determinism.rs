@@ -7,9 +7,11 @@
 mod common;
 
 use common::comparison;
-use common::launch::one_at_a_time;
+use common::launch::{Ended, one_at_a_time};
 use common::retrace::{Story, retrace, rows, sets};
 use common::{Place, changed, configuration, demo, first_difference, offline, recorded, shipped};
+use frames::{Main, Rot, Sub, Vec3};
+use messages::{Flags, FlexureParams, Solution};
 use pipeline::configuration::Configuration;
 use std::fs;
 use std::path::Path;
@@ -36,7 +38,7 @@ fn offline_repeats_itself() {
 }
 
 /// Asserts that both ways lead to the same files, with parameter sets in force in each.
-fn assert_same(place: &Place, configuration: &Path, duration: &str) {
+fn assert_same(place: &Place, configuration: &Path, duration: &str) -> Ended {
     let _alone = one_at_a_time();
     let live = comparison::same_live_and_offline(place, configuration, duration);
     let configuration = Configuration::read(configuration).unwrap();
@@ -44,12 +46,63 @@ fn assert_same(place: &Place, configuration: &Path, duration: &str) {
         let solutions = live.solutions(&area.name);
         assert!(in_force(&configuration, &solutions) > 0, "{}: no parameter set came into force", area.name);
     }
+    live
 }
 
 #[test]
 fn simulated_units_give_the_same_live_and_offline() {
     let place = Place::new();
     assert_same(&place, &place.write("demo.toml", &demo(1, 2.0)), "12s");
+}
+
+/// A zero changes what is told, and neither what is learnt nor how well it is known.
+#[test]
+fn a_zero_turns_the_solutions_and_nothing_else() {
+    let place = Place::new();
+    let name = "name = \"radar\"";
+    let run = |zero: &str| {
+        let text = demo(6, 1.0).replacen(name, &format!("{name}\n{zero}"), 1);
+        let mut seen = Seen::default();
+        pipeline::offline::run(&configuration(&place.write("demo.toml", &text), 25.0), &mut seen).unwrap();
+        seen
+    };
+    let (without, with) = (run(""), run("zero_deg = [0.2, -0.1, 0.5]"));
+    let turn = Rot::<Sub, Sub>::exp(Vec3::new(0.2, -0.1, 0.5) * frames::unit::DEGREE);
+    assert_eq!(without.solutions.len(), with.solutions.len());
+    let mut valid = 0;
+    for (a, b) in without.solutions.iter().zip(&with.solutions).filter(|(a, _)| a.is_valid()) {
+        let back = Rot::<Main, Sub>::from_wxyz(b.q) * turn;
+        let off = (back * Rot::<Main, Sub>::from_wxyz(a.q).inverse()).angle();
+        // what is learnt goes through the zero and back, with the rounding of that
+        assert!(off < 1e-9, "{off} at {}", a.header.sequence);
+        for axis in 0..3 {
+            assert!((a.range[axis] / b.range[axis] - 1.0).abs() < 1e-6, "{:?} {:?}", a.range, b.range);
+        }
+        assert_eq!((a.valid, a.flags | Flags::ZEROED), (b.valid, b.flags));
+        valid += 1;
+    }
+    assert!(valid > 1000 && without.sets.len() > 3, "{valid} valid, {} sets", without.sets.len());
+    for (a, b) in without.sets.iter().zip(&with.sets) {
+        for axis in 0..3 {
+            assert!((a.b[axis] / b.b[axis] - 1.0).abs() < 1e-6 && (a.sigma[axis] / b.sigma[axis] - 1.0).abs() < 1e-6);
+        }
+    }
+}
+
+#[derive(Default)]
+struct Seen {
+    solutions: Vec<Solution>,
+    sets: Vec<FlexureParams>,
+}
+
+impl pipeline::offline::Sink for Seen {
+    fn solution(&mut self, solution: &Solution) {
+        self.solutions.push(*solution);
+    }
+
+    fn parameters(&mut self, parameters: &FlexureParams) {
+        self.sets.push(*parameters);
+    }
 }
 
 /// The default estimator, which runs over the first minutes again whenever parameters come.
@@ -63,14 +116,22 @@ fn the_default_estimator_gives_the_same_live_and_offline() {
     assert_same(&place, &place.write("demo.toml", &text), "14s");
 }
 
-/// One of the units has a clock of its own, and its samples are lost, repeated and swapped.
+/// One of the units has a clock of its own, its samples are lost, repeated and swapped, and its deformation is told from a zero.
 #[test]
 fn two_areas_give_the_same_live_and_offline() {
     let place = Place::new();
     let quick = "\n[area.estimator]\nmatching = \"so3\"\n\n[area.identifier]\nmethod = \"rvm\"\nminimum_s = 3\nperiod_s = 2\nlead_s = 2\n\n\
                  [area.simulation]\n";
     let text = shipped("two_areas.toml").replace("\n[area.simulation]\n", quick);
-    assert_same(&place, &place.write("two_areas.toml", &changed(&text, &[("seed", "2")])), "12s");
+    let name = "name = \"landing-aid\"";
+    let text = changed(&text, &[("seed", "2")]).replacen(name, &format!("{name}\nzero_deg = [0.2, -0.1, 0.5]"), 1);
+    let live = assert_same(&place, &place.write("two_areas.toml", &text), "12s");
+    for (area, zeroed) in [("radar", false), ("landing-aid", true)] {
+        let solutions = live.solutions(area);
+        assert!(solutions.lines().skip(1).all(|row| row.contains("zeroed") == zeroed), "{area}");
+    }
+    let told = live.well()["end_to_end"].as_array().unwrap().iter().map(|row| row["zero_deg"].is_array());
+    assert_eq!(told.collect::<Vec<_>>(), [false, true]);
 }
 
 #[test]

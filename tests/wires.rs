@@ -7,6 +7,7 @@
 mod common;
 
 use common::launch::{Launch, of_stage, one_at_a_time, send};
+use common::receiver::{Binary, Receiver};
 use common::{Place, quick, shipped};
 use estimation::Estimator;
 use estimation::synchronise::Synchroniser;
@@ -16,10 +17,12 @@ use messages::Solution;
 use pipeline::configuration::Configuration;
 use pipeline::lane;
 use pipeline::source::{Batch, Source};
+use serde_json::Value;
 use std::fs;
 use std::net::UdpSocket;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::time::{SystemTime, UNIX_EPOCH};
 
 /// A program of its own that speaks as the units would; dropped, it is killed.
 struct Emulator(Child);
@@ -86,9 +89,13 @@ fn the_demonstration_runs_through_bytes() {
     let place = Place::new();
     let (raw, truth) = (place.path("main.raw"), place.path("truth"));
     let kept = format!(", raw = \"{}\"", raw.display());
-    let configuration = place.write("wires.toml", &wires(&place, [&kept, ""]));
+    let receiver = Receiver::start();
+    let to = format!("to = {{ kind = \"udp\", address = \"127.0.0.1:{}\" }}", receiver.port);
+    let output = format!("\n[[output]]\narea = \"radar\"\n{to}\nsentences = [\"KMB\"]\nsilence_ms = 10000\n");
+    let configuration = place.write("wires.toml", &(wires(&place, [&kept, ""]) + &output));
     let _alone = one_at_a_time();
-    let emulator = Emulator::start(&place, &configuration, &["--truth", truth.to_str().unwrap()]);
+    let truth_and_utc = ["--truth", truth.to_str().unwrap(), "--utc-ahead", "1h"];
+    let emulator = Emulator::start(&place, &configuration, &truth_and_utc);
     let ended = Launch::start(&place, "out", &configuration, Some("11s")).end();
     let report = ended.well().clone();
     send(emulator.0.id(), SIGINT);
@@ -111,7 +118,20 @@ fn the_demonstration_runs_through_bytes() {
     assert!(late * 10 < errors.len(), "{late} of {} times are off by more than 3 ms", errors.len());
     let last = valid.last().expect("some solutions are valid") / unit::ARCMIN;
     assert!(valid.len() > 100 && last < 12.0, "{} valid, {last} arcmin", valid.len());
+    assert_told_by_the_ins(&report["outputs"][0], &receiver.binary());
     again_from_its_bytes(&place, &configuration, &raw);
+}
+
+/// The INS's clock is an hour ahead of the host's, and telegrams follow it as soon as it has told UTC.
+fn assert_told_by_the_ins(report: &Value, telegrams: &[Binary]) {
+    assert_eq!(report["utc"], "INS", "{report}");
+    let age_ms = report["utc_age_ms"].as_f64().unwrap();
+    assert!((0.0..5000.0).contains(&age_ms) && report["utc_error_ms"].is_null(), "{report}");
+    assert!(telegrams.windows(2).all(|pair| pair[0].utc_ns < pair[1].utc_ns));
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_secs_f64();
+    let ahead = |telegram: &Binary| telegram.utc_ns as f64 * 1e-9 - now;
+    let last = ahead(telegrams.last().unwrap());
+    assert!((3500.0..3601.0).contains(&last), "{last} s ahead of the host");
 }
 
 /// The kept bytes take the place of the main unit's port, with an emulator for the other unit.

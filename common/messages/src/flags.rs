@@ -41,12 +41,14 @@ bitflags::bitflags! {
         const ACCEL_STUCK = 1 << 17;
         /// The data disagree with the filter by more than its covariance allows; the published covariance is widened by as much.
         const INCONSISTENT = 1 << 18;
+        /// The deformation and the deck's attitude are those of the sub unit's axes turned by the configured zero.
+        const ZEROED = 1 << 19;
     }
 }
 
 impl Flags {
     /// What each flag says to a watch, the gravest first.
-    pub const SENTENCES: [(Self, &str); 19] = [
+    pub const SENTENCES: [(Self, &str); 20] = [
         (Self::REGISTERING, "The installation is still being found from the ship's motion: no solution yet."),
         (Self::UNOBSERVABLE, "The motion does not show the installation on every axis; more roll or pitch is needed."),
         (Self::SILENT, "The area's unit gives no data: look at its cable, power and port."),
@@ -65,6 +67,7 @@ impl Flags {
         (Self::LATE, "A flexure model came later than it should have."),
         (Self::PRIOR, "The flexure model is still the first guess, not learnt from this ship."),
         (Self::INSTALLATION, "The filter started from the configured installation, not from the motion."),
+        (Self::ZEROED, "A zero is in force: the deformation is told from where it was zeroed."),
         (Self::INTERPOLATED, "The area's unit is read between its samples, as its clock asks."),
     ];
 

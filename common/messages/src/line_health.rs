@@ -42,10 +42,14 @@ pub struct LineHealth {
     pub unkept: u64,
     /// How often the port was opened.
     pub opened: u64,
+    /// UTC, ns since 1970, minus the host's monotonic clock by the last sample that told it; 0 before any.
+    pub utc_offset_ns: i64,
+    /// The time of that sample, ns of the host's monotonic clock.
+    pub utc_at_ns: i64,
     /// 0 for the main unit, otherwise 1 + the index of the area.
     pub unit: u32,
     /// 1 while the clock filter's times are of use.
     pub settled: u32,
 }
 
-message!(LineHealth, "deckflex/LineHealth/1");
+message!(LineHealth, "deckflex/LineHealth/2");

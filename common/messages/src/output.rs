@@ -50,6 +50,8 @@ pub enum UtcSource {
     HostFree = 0,
     /// The host's clock, synchronised.
     Host = 1,
+    /// The telegrams of the main unit's INS.
+    Ins = 2,
 }
 
 impl UtcSource {
@@ -58,6 +60,7 @@ impl UtcSource {
         match code {
             0 => Some(Self::HostFree),
             1 => Some(Self::Host),
+            2 => Some(Self::Ins),
             _ => None,
         }
     }
@@ -67,6 +70,7 @@ impl UtcSource {
         match self {
             Self::HostFree => "host, not synchronised",
             Self::Host => "host",
+            Self::Ins => "INS",
         }
     }
 }

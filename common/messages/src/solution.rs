@@ -54,6 +54,8 @@ pub struct Solution {
     /// Mean of the filter's squared innovations in terms of their variance over the last minute: 1 is expected, less says that the filter is
     /// cautious; 0 where it is not told.
     pub nis: f64,
+    /// Rotation vector of the zero in force: `q` and `deck` are `C Exp(zero)^T` of what was estimated, and so is the static part; rad.
+    pub zero: [f64; 3],
     /// Index of the area.
     pub area: u32,
     /// 1 when the deformation may be used.

@@ -22,13 +22,13 @@ fn layouts_are_as_published() {
         attitude_s @ 224, ins @ 256, ins_sigma @ 288, disturbance @ 312, area @ 320, flags @ 324);
     layout!(FlexureParams, "deckflex/FlexureParams/2", 328, id @ 80, window_begin_ns @ 88, effective_from_ns @ 96, mu @ 104,
         b @ 128, sigma @ 152, ln_sigma_sd @ 224, second_mu @ 248, second_sigma @ 296, points @ 320, area @ 324);
-    layout!(Solution, "deckflex/Solution/3", 744, params_id @ 80, epoch @ 88, q @ 96, static_q @ 128, constant @ 160, phi @ 192,
+    layout!(Solution, "deckflex/Solution/3", 768, params_id @ 80, epoch @ 88, q @ 96, static_q @ 128, constant @ 160, phi @ 192,
         dynamic @ 216, rate @ 240, drift @ 264, scale @ 288, covariance @ 336, static_covariance @ 408, dynamic_covariance @ 480,
-        registered @ 552, registered_sigma @ 584, delay @ 608, skew_sigma @ 632, range @ 640, deck @ 664, deck_sigma @ 696, nis @ 720, area @ 728,
-        valid @ 732, flags @ 736);
+        registered @ 552, registered_sigma @ 584, delay @ 608, skew_sigma @ 632, range @ 640, deck @ 664, deck_sigma @ 696, nis @ 720,
+        zero @ 728, area @ 752, valid @ 756, flags @ 760);
     layout!(Truth, "deckflex/Truth/1", 208, q @ 80, static_q @ 112, dynamic @ 144, ship @ 168, area @ 200);
-    layout!(LineHealth, "deckflex/LineHealth/1", 232, arrival_ns @ 80, device_ns @ 88, skew @ 96, sigma @ 112, good @ 120,
-        overflow @ 200, opened @ 216, unit @ 224, settled @ 228);
+    layout!(LineHealth, "deckflex/LineHealth/2", 248, arrival_ns @ 80, device_ns @ 88, skew @ 96, sigma @ 112, good @ 120,
+        overflow @ 200, opened @ 216, utc_offset_ns @ 224, utc_at_ns @ 232, unit @ 240, settled @ 244);
     layout!(Health, "deckflex/Health/2", 176, taken @ 80, late @ 136, stage @ 152, pid @ 168, alarms @ 172);
     layout!(OutputState, "deckflex/OutputState/1", 192, sent @ 80, utc_offset_ns @ 120, delay_p50_ns @ 152, utc_source @ 176, open @ 188);
 }

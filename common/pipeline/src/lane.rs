@@ -7,7 +7,7 @@ use estimation::align::analytic::Analytic;
 use estimation::align::least_squares::LeastSquares;
 use estimation::align::quaternion::Angles;
 use estimation::align::{self, DelayRegistrar, Registrar};
-use estimation::estimator::{self, DeckEstimator, DeckSettings, MakeRegister, Matched, MatchedSettings};
+use estimation::estimator::{self, DeckEstimator, DeckSettings, MakeRegister, Matched, MatchedSettings, Zeroed};
 use estimation::evaluate::{Coherence, Deviations, ErrorRange, Evaluate, NORMAL_95, Observed};
 use estimation::filter::Filter;
 use estimation::filter::correntropy::Kernel;
@@ -26,6 +26,7 @@ use estimation::matching::small_angle::SmallAngle;
 use estimation::matching::{self, Model, angles, so3};
 use estimation::synchronise::{self, Synchroniser, Unit};
 use estimation::{Estimator, Identifier};
+use frames::Vec3;
 use frames::unit::nanoseconds;
 
 /// What is known of a delay of which nothing is told.
@@ -47,8 +48,16 @@ pub fn synchroniser(configuration: &Configuration, area: usize) -> Synchroniser 
     })
 }
 
-/// The estimator of an area.
+/// The estimator of an area, whose solutions are told from the area's zero.
 pub fn estimator(configuration: &Configuration, area: usize) -> Box<dyn Estimator> {
+    let estimator = matching(configuration, area);
+    match configuration.areas[area].zero {
+        Vec3::ZERO => estimator,
+        zero => Box::new(Zeroed::new(estimator, zero)),
+    }
+}
+
+fn matching(configuration: &Configuration, area: usize) -> Box<dyn Estimator> {
     let told = &configuration.areas[area].estimator;
     let delay = told.delay.map_or(DelayOptions::default(), |delay| delay.options());
     match told.matching {

@@ -10,3 +10,4 @@ pub mod recording;
 pub mod solution_file;
 pub mod source;
 pub mod summary;
+pub mod zero;

@@ -3,7 +3,7 @@
 use crate::solution_file::deviations;
 use estimation::evaluate::NORMAL_95;
 use frames::{Main, Nav, Rot, Sub, Vec3, unit};
-use messages::{Solution, Truth};
+use messages::{Flags, Solution, Truth};
 use serde::Serialize;
 use std::collections::VecDeque;
 use std::io;
@@ -50,6 +50,9 @@ pub struct AreaSummary {
     pub static_deg: Option<[f64; 3]>,
     /// Its standard deviation.
     pub static_sigma_deg: Option<[f64; 3]>,
+    /// Rotation vector of the zero that the solutions are told from; missing without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zero_deg: Option<[f64; 3]>,
     /// Parameter sets used.
     pub parameter_sets: u64,
 }
@@ -156,6 +159,7 @@ impl Figures {
             installation_sigma_deg: registered.map(|last| degrees(last.registered_sigma)),
             static_deg: self.last.map(|last| degrees(vector(last.static_q))),
             static_sigma_deg: self.last.map(|last| degrees(deviations(&last.static_covariance))),
+            zero_deg: self.last.filter(|last| last.flags.contains(Flags::ZEROED)).map(|last| degrees(last.zero)),
             parameter_sets: self.parameter_sets,
         }
     }

@@ -23,7 +23,7 @@ structure!(Solution {
     1 header, 2 params_id, 3 epoch, 4 q, 5 static_q, 6 constant, 7 phi, 8 dynamic, 9 rate, 10 drift, 11 scale, 12 covariance,
     13 static_covariance, 14 dynamic_covariance, 15 registered, 16 registered_sigma, 17 delay, 18 delay_sigma, 19 skew,
     20 skew_sigma, 21 range, 22 deck, 23 deck_sigma, 24 area, 25 valid, 26 flags,
-    27 nis
+    27 nis, 28 zero
 } left out { reserved });
 structure!(Truth { 1 header, 2 q, 3 static_q, 4 dynamic, 5 ship, 6 area } left out { reserved });
 structure!(Health {
@@ -45,8 +45,8 @@ macro_rules! records {
                 match self { $(Self::$variant(_) => name_of::<$type>()),* }
             }
 
-            /// Its schema, a set of file descriptors.
-            pub(crate) fn schema(&self) -> Vec<u8> {
+            /// Its schema, a serialised set of Protocol Buffers' file descriptors.
+            pub fn schema(&self) -> Vec<u8> {
                 match self { $(Self::$variant(_) => schema::<$type>()),* }
             }
 

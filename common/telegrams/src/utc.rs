@@ -34,11 +34,6 @@ impl UtcMap {
         self.measured_ns.map(|_| instant_ns + self.offset_ns(instant_ns))
     }
 
-    /// For how long the last measurement has been used, ns.
-    pub fn age_ns(&self, now_ns: i64) -> i64 {
-        now_ns - self.measured_ns.unwrap_or(now_ns)
-    }
-
     /// By how much the mapping still runs ahead of a clock that was set back, ns.
     pub fn ahead_ns(&self, now_ns: i64) -> i64 {
         self.offset_ns(now_ns) - self.target_ns

@@ -28,6 +28,8 @@ pub(crate) struct Reading {
     pub dvel: Option<[f64; 3]>,
     /// Whether the device says that its accelerometers are of no use.
     pub force_invalid: bool,
+    /// UTC at the time of the stamp, ns since 1970.
+    pub utc_ns: Option<i64>,
     /// Attitude of the vessel, and its standard deviation about east, north, up, rad.
     pub attitude: Option<(Rot<Nav, Nav>, [f64; 3])>,
 }
@@ -75,6 +77,7 @@ impl Reading {
             dtheta: frame.gyros_valid().then(|| scaled(frame.rotation, unit * over)),
             dvel: frame.accelerometers_valid().then(|| scaled(frame.acceleration, STANDARD_GRAVITY * interval)),
             force_invalid: !frame.accelerometers_valid(),
+            utc_ns: None,
             attitude: None,
         }
     }
@@ -94,6 +97,7 @@ impl Reading {
             dtheta: telegram.rotation.map(|rate| body(scaled(rate, DEGREE * interval))),
             dvel: telegram.acceleration.map(|force| body(scaled(force, interval))),
             force_invalid: false,
+            utc_ns: telegram.utc_ns(),
             attitude: telegram.attitude.map(|attitude| {
                 let sigma = telegram.attitude_deviation.map_or([0.0; 3], |sigma| level(attitude[0], sigma));
                 (rotation(attitude), sigma)
@@ -124,6 +128,7 @@ impl Reading {
             dtheta: of(&frame.gyro, scale * DEGREE),
             dvel: frame.acceleration.as_ref().and_then(|cluster| of(cluster, force)),
             force_invalid: frame.acceleration.is_some_and(|cluster| cluster.status != 0),
+            utc_ns: None,
             attitude: None,
         }
     }

@@ -49,6 +49,8 @@ pub struct Heard {
     pub attitude: Option<MainAttitude>,
     /// The device's own time, unwrapped, ns.
     pub device_ns: i64,
+    /// By how much UTC, ns since 1970, is more than the sample's time, from devices that tell it.
+    pub utc_offset_ns: Option<i64>,
     /// When its last byte came, ns of the host's monotonic clock.
     pub arrival_ns: i64,
 }
@@ -258,7 +260,9 @@ impl Unit {
         let attitude =
             reading.attitude.map(|(rotation, sigma)| MainAttitude { header, q: rotation.quaternion(), sigma });
         let sample = ImuSample { header, interval_ns, dtheta, dvel, flags, unit, ordinal: 0 };
-        Some(Heard { sample, attitude, device_ns, arrival_ns: self.arrival_ns })
+        // the tick is coarse, the smoothed time less so
+        let utc_offset_ns = reading.utc_ns.map(|utc_ns| utc_ns + device_ns - place.device_ns - time_ns);
+        Some(Heard { sample, attitude, device_ns, utc_offset_ns, arrival_ns: self.arrival_ns })
     }
 
     /// Numbers count from the epoch where the stream begins or begins again, and by the device from there on.

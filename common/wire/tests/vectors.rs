@@ -108,6 +108,8 @@ fn stdbin_version_2_of_a_real_unit() {
     assert_eq!((telegram.masks.navigation, telegram.masks.extended), (0x03E3_FFFF, 0));
     // neither a quaternion nor a raw rate, and the rate that there is has no place
     assert_eq!((telegram.quaternion, telegram.rotation), (None, None));
+    // it has not been told UTC: the time is since its start, and the date is that of no day
+    assert_eq!((telegram.date, telegram.utc_ns()), (Some([1, 1, 2006]), None));
 }
 
 #[test]
@@ -129,6 +131,11 @@ fn stdbin_version_3_of_a_real_unit() {
     // not block 5, which says -0.00136, -0.002145 and -0.000025
     assert_eq!(first.rotation.unwrap(), [0.0; 3]);
     assert_eq!(first.acceleration.unwrap(), [0.0, 0.0, 7.999_994]);
+    // told UTC at a whole second, 353.5 ms before
+    assert_eq!((first.date, first.time, first.utc), (Some([14, 3, 2019]), 566_983_535, Some(566_980_000)));
+    // 15:44:58.3535 of that day
+    assert!(telegrams.iter().all(|telegram| telegram.utc_ns().is_some()));
+    assert_eq!(first.utc_ns(), Some(1_552_578_298_353_500_000));
     assert_eq!(first.position.unwrap().map(|v| (v * 1e4).round()), [488_991.0, 20_620.0]);
 }
 
@@ -161,7 +168,9 @@ fn stdbin_telegrams_of_all_versions_come_back() {
             quaternion: Some([1.0, 0.0, 0.0, 0.0]),
             acceleration: Some([0.1, 0.2, 9.8]),
             rotation: Some([1.0, -2.0, 3.0]),
-            masks: Masks { navigation: 0x1400_0083, extended: 4, external: 0 },
+            date: Some([29, 2, 2024]),
+            utc: Some(863_990_000),
+            masks: Masks { navigation: 0x1400_2083, extended: 4, external: 1 },
         };
         if version == 2 {
             (told.rotation, told.masks.extended) = (None, 0);

@@ -85,13 +85,16 @@ impl Wired {
         self.unit.push(piece.arrival_ns, piece.bytes());
         self.health.arrival_ns = piece.arrival_ns;
         while let Some(heard) = self.unit.next_sample() {
-            let Heard { sample, mut attitude, device_ns, .. } = heard;
+            let Heard { sample, mut attitude, device_ns, utc_offset_ns, .. } = heard;
             if let (Some(attitude), Some(mounting)) = (&mut attitude, self.mounting) {
                 let nav_from_case = Rot::<Nav, Case>::from_wxyz(attitude.q);
                 attitude.q = (nav_from_case * mounting.inverse()).quaternion();
             }
             feed.publish_one(&sample, attitude.as_ref().filter(|_| sample.unit == 0))?;
             (self.health.header, self.health.device_ns) = (sample.header, device_ns);
+            if let Some(utc_offset_ns) = utc_offset_ns {
+                (self.health.utc_offset_ns, self.health.utc_at_ns) = (utc_offset_ns, sample.header.time_ns);
+            }
         }
         match self.unit.complaint() {
             Some(complaint) => {

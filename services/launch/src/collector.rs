@@ -410,6 +410,7 @@ impl AreaRecord {
             parameters: self.parameters,
             late_parameters: self.late,
             first_parameters_s: self.first_parameters_s,
+            zero_deg: self.figures.summary().zero_deg,
             latency: Percentiles::of(&self.end_to_end.whole, self.wait.whole.summary().p50_us),
         }
     }

@@ -70,7 +70,8 @@ impl fmt::Display for OutputRow {
         let Telegrams { sent, invalid, extrapolated, unsendable, withheld } = self.telegrams;
         write!(f, "output to {}, area {}: {sent} telegrams, {invalid} of them invalid", self.to, self.area)?;
         write!(f, ", {extrapolated} carried forward; {unsendable} unsendable, {withheld} withheld")?;
-        write!(f, "; after {:.0} us (p99 {:.0}, max {:.0}); UTC: {}", self.p50_us, self.p99_us, self.max_us, self.utc)?;
+        write!(f, "; after {:.0} us (p99 {:.0}, max {:.0})", self.p50_us, self.p99_us, self.max_us)?;
+        write!(f, "; UTC: {}, {:.1} s old", self.utc, self.utc_age_ms / 1e3)?;
         self.utc_error_ms.map_or(Ok(()), |ms| write!(f, " within {ms:.1} ms"))
     }
 }

@@ -106,6 +106,9 @@ pub struct AreaRow {
     pub late_parameters: u64,
     /// Data time of the first parameter set after the first solution, s.
     pub first_parameters_s: Option<f64>,
+    /// Rotation vector of the zero that the solutions are told from.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zero_deg: Option<[f64; 3]>,
     /// Its latency.
     #[serde(flatten)]
     pub latency: Percentiles,
@@ -144,6 +147,9 @@ impl fmt::Display for Report {
                 "area {}: {} parameter sets ({first}), {} late",
                 row.area, row.parameters, row.late_parameters
             )?;
+            if let Some([x, y, z]) = row.zero_deg {
+                writeln!(f, "area {}: told from a zero of {x:.4}, {y:.4}, {z:.4} degrees", row.area)?;
+            }
         }
         self.outputs.iter().try_for_each(|row| writeln!(f, "{row}"))?;
         writeln!(

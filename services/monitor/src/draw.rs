@@ -11,14 +11,14 @@ use ratatui::text::{Line, Span, Text};
 use ratatui::widgets::{Block, Paragraph, Row, Table, Wrap};
 use std::f64::consts::TAU;
 
-const KEYS: &str = "q leave   tab next area   e mark an event";
+const KEYS: &str = "q leave   tab next area   e mark an event   z zero";
 
 /// Draws the page as it is at `now_ns` of the monotonic clock.
 pub fn draw(frame: &mut Frame, page: &Page, now_ns: i64) {
     let [head, body, foot] =
         Layout::vertical([Constraint::Length(1), Constraint::Min(0), Constraint::Length(1)]).areas(frame.area());
     frame.render_widget(Paragraph::new(heading(page)), head);
-    let keys = if page.note.is_empty() { KEYS.to_owned() } else { format!("{KEYS}   {}", page.note) };
+    let keys = if page.note.is_empty() { KEYS.to_owned() } else { format!("{}   {KEYS}", page.note) };
     frame.render_widget(Paragraph::new(keys).style(Style::new().fg(Color::DarkGray)), foot);
     match (&page.link, page.area()) {
         (Link::Live, Some(area)) => live(frame, body, page, area, now_ns),

@@ -1,24 +1,25 @@
 //! `deckflex monitor`: a page in the terminal that looks at a running launch.
 
 mod draw;
-mod launches;
 mod marks;
 mod page;
 mod ports;
 mod strip;
 mod words;
+mod zeros;
 
 pub use draw::draw;
 pub use page::{AreaState, Delays, Link, Page, Past, StageState};
 
-use launches::Launch;
 use pipeline::configuration::ConfigurationError;
+use pipeline::zero::Zero;
 use ports::Ports;
 use ratatui::crossterm::event::{self, Event, KeyCode, KeyEventKind, KeyModifiers};
-use runtime::{Stop, TransportError, monotonic_ns};
+use runtime::{Lookout, Stop, TransportError, monotonic_ns};
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
 use std::time::Duration;
+use zeros::{Place, ZeroError};
 
 /// What the user asks for.
 #[derive(Clone, Debug)]
@@ -27,6 +28,8 @@ pub struct Options {
     pub configuration: Option<PathBuf>,
     /// Where marked events go.
     pub events: PathBuf,
+    /// Where it is told which zeros were taken.
+    pub zeros: PathBuf,
 }
 
 /// Why there is no page.
@@ -70,7 +73,9 @@ pub fn run(options: &Options) -> Result<(), MonitorError> {
 }
 
 fn show(options: &Options, stop: &Stop, terminal: &mut ratatui::DefaultTerminal) -> Result<(), MonitorError> {
-    let mut watch = Watch { options, page: Page::waiting(waiting(options)), ports: None, seen: None, looked_ns: 0 };
+    let lookout = Lookout::new(options.configuration.as_deref());
+    let mut watch =
+        Watch { options, page: Page::waiting(waiting(options)), ports: None, lookout, looked_ns: 0, asked: None };
     while !stop.requested() {
         watch.update(monotonic_ns());
         terminal.draw(|frame| draw(frame, &watch.page, monotonic_ns()))?;
@@ -95,9 +100,10 @@ struct Watch<'a> {
     options: &'a Options,
     page: Page,
     ports: Option<Ports>,
-    /// A launch that was there at the last look.
-    seen: Option<Launch>,
+    lookout: Lookout,
     looked_ns: i64,
+    /// The zero that waits for a yes, with the area's index.
+    asked: Option<(usize, Zero)>,
 }
 
 impl Watch<'_> {
@@ -114,7 +120,7 @@ impl Watch<'_> {
         match &self.ports {
             Some(ports) if failed.is_none() && ports.is_alive() => {}
             Some(_) => {
-                self.ports = None;
+                (self.ports, self.asked) = (None, None);
                 let reason =
                     failed.map_or("The launch has ended.".to_owned(), |error| format!("Lost the launch: {error}."));
                 self.page = Page::waiting(format!("{reason} {}", waiting(self.options)));
@@ -123,24 +129,14 @@ impl Watch<'_> {
         }
     }
 
-    /// To a launch that was there at the last look already: at its very start its topics are still being made, and who is killed while
-    /// it makes one spoils it for all.
     fn attach(&mut self) {
-        let found = match launches::find(self.options.configuration.as_deref()) {
-            Ok(found) => found,
-            Err(error) => {
-                self.page = Page::waiting(format!("Cannot look for launches: {error}."));
-                return;
-            }
-        };
-        let known = self.seen.as_ref().is_some_and(|seen| found.contains(seen));
-        if let (true, Some(launch)) = (known, &self.seen) {
-            match Ports::open(launch) {
+        match self.lookout.look() {
+            Ok(Some(launch)) => match Ports::open(&launch) {
                 Ok((ports, page)) => (self.ports, self.page) = (Some(ports), page),
                 Err(error) => self.page = Page::waiting(format!("Cannot attach to the launch: {error}.")),
-            }
-        } else {
-            self.seen = found.into_iter().next();
+            },
+            Ok(None) => {}
+            Err(error) => self.page = Page::waiting(format!("Cannot look for launches: {error}.")),
         }
     }
 
@@ -150,14 +146,49 @@ impl Watch<'_> {
         if key.kind != KeyEventKind::Press {
             return false;
         }
+        let asked = self.asked.take();
         match key.code {
+            KeyCode::Char('y') if asked.is_some() => asked.iter().for_each(|(area, zero)| self.zero(*area, zero)),
+            _ if asked.is_some() => self.page.note = "no zero was taken".to_owned(),
             KeyCode::Char('q') | KeyCode::Esc => return true,
             KeyCode::Char('c') if key.modifiers.contains(KeyModifiers::CONTROL) => return true,
             KeyCode::Tab => self.page.next_area(),
             KeyCode::Char('e') => self.mark(),
+            KeyCode::Char('z') => self.ask(),
             _ => {}
         }
         false
+    }
+
+    /// Asks whether the mean of the last minute is to be told as none.
+    fn ask(&mut self) {
+        let Some(area) = self.page.area() else { return };
+        let found = match &self.ports {
+            Some(ports) if ports.configuration().is_some() => area.minute.zero().map_err(ZeroError::from),
+            _ => Err(ZeroError::Recorded),
+        };
+        self.page.note = match &found {
+            Ok(zero) => {
+                let [x, y, z] = zero.value.array().map(|x| x / frames::unit::DEGREE);
+                format!("zero {} at {x:+.3}, {y:+.3}, {z:+.3} degrees? y writes it", area.name)
+            }
+            Err(error) => error.to_string(),
+        };
+        self.asked = found.ok().map(|zero| (self.page.shown, zero));
+    }
+
+    fn zero(&mut self, area: usize, zero: &Zero) {
+        let configuration = self.ports.as_ref().and_then(Ports::configuration);
+        let Some(((area, last), configuration)) =
+            self.page.areas.get(area).and_then(|area| Some((&area.name, area.last.as_ref()?))).zip(configuration)
+        else {
+            return;
+        };
+        let place = Place { configuration, zeros: &self.options.zeros, area };
+        self.page.note = match place.write(zero, last) {
+            Ok(()) => "written; the zero takes effect when the launch is started again".to_owned(),
+            Err(error) => error.to_string(),
+        };
     }
 
     fn mark(&mut self) {

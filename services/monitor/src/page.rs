@@ -2,6 +2,7 @@
 
 use frames::unit;
 use messages::{FlexureParams, Health, Solution, Stage};
+use pipeline::zero::LastMinute;
 use runtime::Sequence;
 use std::collections::VecDeque;
 
@@ -80,6 +81,8 @@ pub struct AreaState {
     pub ended: bool,
     /// Counts what never arrived here.
     pub sequence: Sequence,
+    /// What a zero would be made of.
+    pub minute: LastMinute,
     /// The past of the strip charts.
     pub past: VecDeque<Past>,
     /// By the source, by synchronise, by estimate, and from the sample's due time to the solution.
@@ -178,6 +181,7 @@ impl AreaState {
         }
         self.ended = false;
         self.sequence.see(&solution.header);
+        self.minute.see(solution);
         self.received += 1;
         self.last = Some(*solution);
         let stamps = solution.header.stamps;

@@ -1,16 +1,16 @@
 //! The page's readers in the domain of a launch.
 
 use crate::MonitorError;
-use crate::launches::Launch;
 use crate::page::Page;
 use messages::{FlexureParams, Health, Solution, topic};
 use pipeline::configuration::Configuration;
-use runtime::{Domain, Node, Subscriber, TransportError, monotonic_ns};
-use std::path::PathBuf;
+use runtime::{Domain, Launch, Node, Subscriber, TransportError, monotonic_ns};
+use std::path::Path;
 
 /// The readers.
 pub struct Ports {
-    root: PathBuf,
+    launch: Launch,
+    recorded: bool,
     areas: Vec<(Subscriber<Solution>, Subscriber<FlexureParams>)>,
     health: Vec<Subscriber<Health>>,
     _node: Node,
@@ -37,7 +37,8 @@ impl Ports {
             Subscriber::open(&node, &topic::health(stage.stage, stage.area.map(|area| names[area])))
         };
         let health = page.stages.iter().map(of_stage).collect::<Result<_, _>>()?;
-        Ok((Self { root: launch.root.clone(), areas, health, _node: node }, page))
+        let recorded = configuration.as_recorded;
+        Ok((Self { launch: launch.clone(), recorded, areas, health, _node: node }, page))
     }
 
     /// Takes in everything that has come.
@@ -61,8 +62,13 @@ impl Ports {
         Ok(())
     }
 
+    /// The configuration of the launch; `None` where it is a recorded run.
+    pub fn configuration(&self) -> Option<&Path> {
+        (!self.recorded).then_some(self.launch.configuration.as_path())
+    }
+
     /// Whether the launch still runs.
     pub fn is_alive(&self) -> bool {
-        Domain::open(&self.root).is_ok()
+        self.launch.is_alive()
     }
 }

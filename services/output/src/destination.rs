@@ -1,36 +1,14 @@
 use crate::OutputError;
+use crate::clock::Clock;
 use crate::line::Line;
 use frames::unit::nanoseconds;
-use messages::{Header, OutputState, Solution, UtcSource};
+use messages::{Header, OutputState, Solution};
 use pipeline::configuration::{Configuration, Output, Telegrams};
-use runtime::{HostUtc, Latency, host_utc, monotonic_ns};
-use telegrams::{Cadence, Report, Track, UtcMap, encode_kmb, instant_ns};
+use runtime::{Latency, monotonic_ns};
+use telegrams::{Cadence, Report, Track, encode_kmb, instant_ns};
 
 /// The least difference that shows in a sentence.
 const MILLISECOND_NS: i64 = 1_000_000;
-
-/// UTC as the host has it.
-pub struct Clock {
-    map: UtcMap,
-    host: HostUtc,
-}
-
-impl Clock {
-    pub fn new() -> Self {
-        let mut clock = Self { map: UtcMap::default(), host: host_utc() };
-        clock.read();
-        clock
-    }
-
-    pub fn read(&mut self) {
-        self.host = host_utc();
-        self.map.measure(monotonic_ns(), self.host.offset_ns);
-    }
-
-    fn utc_ns(&self, instant_ns: i64) -> i64 {
-        self.map.utc_ns(instant_ns).unwrap_or(instant_ns + self.host.offset_ns)
-    }
-}
 
 /// One destination: what has gone there and what is due.
 pub struct Destination {
@@ -165,16 +143,15 @@ impl Destination {
     pub fn state(&self, clock: &Clock, now_ns: i64) -> OutputState {
         let delays = self.delays.summary();
         let ns = |us: f64| (us * 1e3) as i64;
-        let source = if clock.host.error_ns.is_some() { UtcSource::Host } else { UtcSource::HostFree };
         OutputState {
             utc_offset_ns: clock.utc_ns(now_ns) - now_ns,
-            utc_age_ns: clock.map.age_ns(now_ns),
-            utc_error_ns: clock.host.error_ns.unwrap_or(-1),
-            utc_ahead_ns: clock.map.ahead_ns(now_ns),
+            utc_age_ns: clock.age_ns(now_ns),
+            utc_error_ns: clock.error_ns().unwrap_or(-1),
+            utc_ahead_ns: clock.ahead_ns(now_ns),
             delay_p50_ns: ns(delays.p50_us),
             delay_p99_ns: ns(delays.p99_us),
             delay_max_ns: ns(delays.max_us),
-            utc_source: source as u32,
+            utc_source: clock.source() as u32,
             open: u32::from(self.line.is_open()),
             ..self.state
         }

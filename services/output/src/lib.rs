@@ -1,6 +1,7 @@
 //! `deckflex output`: the areas' solutions as telegrams on the ship's wires.
 
 mod area;
+mod clock;
 mod destination;
 mod error;
 mod line;
@@ -8,7 +9,8 @@ mod line;
 pub use error::OutputError;
 
 use area::AreaInput;
-use destination::{Clock, Destination};
+use clock::Clock;
+use destination::Destination;
 use messages::{OutputState, Stage, topic};
 use pipeline::configuration::Configuration;
 use runtime::{Beat, Context, Publisher, TransportError, Waiter, Wake, monotonic_ns};
@@ -16,7 +18,7 @@ use std::time::Duration;
 
 /// How long a sleep may last without data.
 const NAP_NS: i64 = 100_000_000;
-/// The host's clock is read, and the states are published, so often, ns.
+/// The source of UTC is read, and the states are published, so often, ns.
 const SECOND_NS: i64 = 1_000_000_000;
 
 /// The destinations with the topics of their states.
@@ -48,7 +50,7 @@ impl Destinations {
         if now_ns - self.told_ns >= SECOND_NS {
             self.publish(now_ns)?;
             // last, so that the states tell the greatest age that telegrams were sent with
-            self.clock.read();
+            self.clock.read()?;
         }
         Ok(())
     }
@@ -101,7 +103,7 @@ pub fn run(configuration: &Configuration, context: &Context) -> Result<(), Outpu
             areas.push(AreaInput::open(node, index, &area.name)?);
         }
     }
-    let mut destinations = Destinations { all: Vec::new(), clock: Clock::new(), told_ns: 0 };
+    let mut destinations = Destinations { all: Vec::new(), clock: Clock::open(node, configuration)?, told_ns: 0 };
     for number in 0..configuration.outputs.len() {
         let destination = Destination::open(configuration, number, context.run_id, context.resume)?;
         destinations.all.push((destination, Publisher::open(node, &topic::output(number))?));

@@ -8,12 +8,13 @@ mod files;
 
 use device::Voice;
 use files::Files;
+use frames::unit::nanoseconds;
 use pipeline::configuration::Configuration;
 use rand_distr::{Distribution, Exp1};
 use rand_pcg::Pcg64Mcg;
 use runtime::line::{LineError, Outlet};
 use runtime::scheduling::{self, Request};
-use runtime::{Stop, TransportError, monotonic_ns, sleep_until};
+use runtime::{Stop, TransportError, host_utc, monotonic_ns, sleep_until};
 use simulation::{Epoch, Scenario, Simulator};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -31,6 +32,8 @@ pub struct Options {
     pub latency_s: f64,
     /// By how much the clocks are off the host's, a ratio.
     pub skew: f64,
+    /// By how much the UTC that the main unit's INS tells is ahead of the host's, s; `None` if it tells none.
+    pub utc_ahead_s: Option<f64>,
     /// Format of KVH units.
     pub kvh_format: KvhFormat,
     /// Folder for the truth and the true times of the samples.
@@ -128,6 +131,9 @@ impl Emulator {
         let stop = Stop::install()?;
         scheduling::apply(Request::Auto, PRIORITY);
         let begin_ns = monotonic_ns() + RUN_UP_NS;
+        if let Some(ahead_s) = self.options.utc_ahead_s {
+            self.voices[0].tell_utc(begin_ns + host_utc().offset_ns + nanoseconds(ahead_s));
+        }
         let mut random = Pcg64Mcg::new(u128::from(self.seed) << 64 | ODD);
         let mut waiting = BinaryHeap::new();
         let skew = self.options.skew;

@@ -3,9 +3,13 @@
 mod adoption;
 pub mod deck;
 mod matched;
+mod zero;
 
 pub use deck::{DeckEstimator, DeckSettings};
 pub use matched::{MakeRegister, Matched, MatchedSettings};
+pub use zero::Zeroed;
+
+pub(crate) use zero::static_part;
 
 use crate::flexure::{Flexure, Hull};
 use crate::matching::so3::Grade;

@@ -5,6 +5,7 @@
 
 use super::autocovariance::detrend;
 use super::window::Point;
+use crate::estimator::static_part;
 use crate::matching::retiming::{Attitudes, Together};
 use crate::matching::so3::symmetric;
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
@@ -48,7 +49,7 @@ impl Anchor {
             constant: Rot::from_quaternion(solution.constant)?,
             drift: drift.is_finite().then_some(drift)?,
             scale: scale.iter().all(|x| x.is_finite()).then_some(scale)?,
-            fixed: Rot::from_quaternion(solution.static_q)?,
+            fixed: static_part(solution)?,
             covariance: a_m * Matrix3::from_row_slice(&solution.covariance) * a_m.transpose(),
             delay_s: Some(solution.delay).filter(|delay| delay.is_finite())?,
             skew: Some(solution.skew).filter(|skew| skew.is_finite())?,

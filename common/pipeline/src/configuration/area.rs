@@ -51,6 +51,9 @@ pub struct Area {
     /// How the unit was installed, if that is known.
     #[serde(default, deserialize_with = "table::optional")]
     pub installation: Option<Installation>,
+    /// Rotation vector of the deformation that is to be told as none, rad; the same in m and in s.
+    #[serde(rename = "zero_deg", default = "origin", deserialize_with = "quantity::zero_deg")]
+    pub zero: Vec3<Main>,
     /// The fast stage.
     #[serde(default, deserialize_with = "table::one")]
     pub estimator: EstimatorSettings,

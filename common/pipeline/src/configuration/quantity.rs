@@ -154,6 +154,7 @@ quantities! {
 
     lever_arm_m: 1.0, -1000.0, 1000.0;
     rotation_vector_deg: unit::DEGREE, -360.0, 360.0;
+    zero_deg: unit::DEGREE, -5.0, 5.0;
     rotation_vector_arcmin: unit::ARCMIN, -10_800.0, 10_800.0;
     matrix: 1.0, -1.001, 1.001;
     sigma_deg: unit::DEGREE, 1e-4, 180.0;

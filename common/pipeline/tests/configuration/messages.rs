@@ -50,6 +50,7 @@ fn a_value_out_of_its_range_is_told_with_the_range() {
         message_with("lever_arm_m = [0, 0, 5000]"),
         "ship.toml:9: area[0].lever_arm_m: must be within -1000 to 1000"
     );
+    assert_eq!(message_with("zero_deg = [0, 5.1, 0]"), "ship.toml:9: area[0].zero_deg: must be within -5 to 5");
     assert_eq!(
         message("\"radar\"", "\"Radar mast\""),
         "ship.toml:6: area[0].name = \"Radar mast\": must be 1 to 32 characters of a-z, 0-9, _ and -"
@@ -69,6 +70,7 @@ fn a_wrong_type_is_told_with_the_right_one() {
         "ship.toml:9: area[0].lever_arm_m[1] = true: expected a number"
     );
     assert_eq!(message_with("lever_arm_m = 3"), "ship.toml:9: area[0].lever_arm_m = 3: expected an array");
+    assert_eq!(message_with("zero_deg = 1"), "ship.toml:9: area[0].zero_deg = 1: expected an array");
     assert_eq!(message_with("accel = [1, 2]"), "ship.toml:9: area[0].accel: expected a table");
     assert_eq!(message("\"radar\"", "5"), "ship.toml:6: area[0].name = 5: expected a string");
     assert_eq!(message("[[area]]", "[area]"), "ship.toml:5: area: expected an array");

@@ -18,7 +18,7 @@ fn everything_but_the_required_keys_has_a_default() {
     assert_eq!((c.run.seed, c.run.duration_s, c.run.scheduling), (1, None, SchedulingChoice::Auto));
     assert_eq!((c.main.accel, c.main.mounting), (None, Rot::<Main, Case>::identity()));
     let area = &c.areas[0];
-    assert_eq!((area.lever_arm, area.accel, area.installation), (Vec3::ZERO, None, None));
+    assert_eq!((area.lever_arm, area.accel, area.installation, area.zero), (Vec3::ZERO, None, None, Vec3::ZERO));
     assert_eq!(area.mounting, Rot::<Sub, Case>::identity());
     assert_eq!(
         (area.gyro.scale, area.gyro.misalignment, area.gyro.stamp_jitter, area.gyro.range),

@@ -6,6 +6,7 @@
 //! The rotation rate of navigation block 5 is free of the earth's rate, unlike a gyro: it is not even decoded.
 
 mod blocks;
+mod utc;
 
 pub use blocks::{Group, Masks};
 
@@ -16,10 +17,14 @@ use crate::framer::{Look, Protocol};
 const ATTITUDE: u32 = 0;
 const ATTITUDE_DEVIATION: u32 = 1;
 const POSITION: u32 = 7;
+const DATE: u32 = 13;
 const QUATERNION: u32 = 26;
 const ACCELERATION: u32 = 28;
 /// Bit of the extended mask: rotation rate with the earth's rate.
 const ROTATION: u32 = 2;
+
+/// Bit of the mask of external sensors: that and when UTC came.
+const UTC: u32 = 0;
 
 /// A tick of the validity time, ns.
 pub const TICK_NS: i64 = 100_000;
@@ -45,12 +50,16 @@ pub struct Telegram {
     pub attitude_deviation: Option<[f32; 3]>,
     /// Latitude and longitude, degrees.
     pub position: Option<[f64; 2]>,
+    /// Day, month and year.
+    pub date: Option<[u16; 3]>,
     /// Scalar first: turns a vector seen in north, west, up into the same vector seen in the vessel's axes.
     pub quaternion: Option<[f32; 4]>,
     /// Specific force along the vessel's axes, m/s^2, gravity included.
     pub acceleration: Option<[f32; 3]>,
     /// Rotation rate about the vessel's axes, deg/s, the earth's rate included.
     pub rotation: Option<[f32; 3]>,
+    /// Time of validity of the UTC that the device was told last, ticks.
+    pub utc: Option<u32>,
 }
 
 /// A frame.
@@ -148,6 +157,10 @@ impl Telegram {
                 (Group::Navigation, ATTITUDE) => self.attitude = Some(reader.triad()),
                 (Group::Navigation, ATTITUDE_DEVIATION) => self.attitude_deviation = Some(reader.triad()),
                 (Group::Navigation, POSITION) => self.position = Some([reader.f64(), reader.f64()]),
+                (Group::Navigation, DATE) => {
+                    let [day, month] = [reader.u8(), reader.u8()].map(u16::from);
+                    self.date = Some([day, month, reader.u16()]);
+                }
                 (Group::Navigation, QUATERNION) => {
                     let scalar = reader.f32();
                     let [x, y, z] = reader.triad();
@@ -155,6 +168,7 @@ impl Telegram {
                 }
                 (Group::Navigation, ACCELERATION) => self.acceleration = Some(reader.triad()),
                 (Group::Extended, ROTATION) => self.rotation = Some(reader.triad()),
+                (Group::External, UTC) => self.utc = Some(reader.u32()),
                 _ => {}
             }
         }
@@ -186,12 +200,20 @@ impl Telegram {
             out.extend_from_slice(&longitude.to_be_bytes());
             out.extend_from_slice(&[0; 5]);
         }
+        if let Some([day, month, year]) = self.date {
+            out.extend_from_slice(&[day as u8, month as u8]);
+            out.extend_from_slice(&year.to_be_bytes());
+        }
         if let Some([scalar, x, y, z]) = self.quaternion {
             out.extend_from_slice(&scalar.to_be_bytes());
             put_triad(out, [x, y, z]);
         }
         self.acceleration.iter().for_each(|v| put_triad(out, *v));
         self.rotation.iter().filter(|_| self.version >= 3).for_each(|v| put_triad(out, *v));
+        if let Some(utc) = self.utc {
+            out.extend_from_slice(&utc.to_be_bytes());
+            out.push(0);
+        }
         let check = sum(&out[begin..]);
         out.extend_from_slice(&check.to_be_bytes());
     }
@@ -201,9 +223,10 @@ impl Telegram {
         let navigation = bit(self.attitude.is_some(), ATTITUDE)
             | bit(self.attitude_deviation.is_some(), ATTITUDE_DEVIATION)
             | bit(self.position.is_some(), POSITION)
+            | bit(self.date.is_some(), DATE)
             | bit(self.quaternion.is_some(), QUATERNION)
             | bit(self.acceleration.is_some(), ACCELERATION);
         let extended = bit(self.rotation.is_some() && self.version >= 3, ROTATION);
-        Masks { navigation, extended, external: 0 }
+        Masks { navigation, extended, external: bit(self.utc.is_some(), UTC) }
     }
 }

@@ -25,11 +25,17 @@ pub struct Voice {
     device: Device,
     format: KvhFormat,
     interval_ns: i64,
+    begin_utc_ns: Option<i64>,
 }
 
 impl Voice {
     pub fn new(device: Device, format: KvhFormat, interval_ns: i64) -> Self {
-        Self { device, format, interval_ns }
+        Self { device, format, interval_ns, begin_utc_ns: None }
+    }
+
+    /// From now on the device is told UTC, by which sample 0 was at this time, ns since 1970.
+    pub fn tell_utc(&mut self, begin_ns: i64) {
+        self.begin_utc_ns = Some(begin_ns);
     }
 
     /// The frame of a sample, in the device's own time: its clock counts nominal intervals.
@@ -81,9 +87,10 @@ impl Voice {
         let vessel = |v: [f64; 3], unit: f64| [v[1], -v[0], v[2]].map(|v| (v / (unit * self.interval())) as f32);
         let euler = attitude.map(|attitude| Rot::<Nav, Nav>::from_wxyz(attitude.q).euler());
         let degrees = |angles: [f64; 3]| angles.map(|angle| (angle / DEGREE) as f32);
-        Telegram {
+        let rounded_ns = self.device_ns(sample) + wire::stdbin::TICK_NS / 2;
+        let told = Telegram {
             version: 3,
-            time: ((self.device_ns(sample) + 50_000) / wire::stdbin::TICK_NS % 864_000_000) as u32,
+            time: (rounded_ns / wire::stdbin::TICK_NS % 864_000_000) as u32,
             counter: sample.header.sequence as u32,
             attitude: euler.map(|euler| degrees([euler.heading, euler.roll, -euler.pitch])),
             attitude_deviation: attitude.map(|attitude| {
@@ -93,7 +100,8 @@ impl Voice {
             acceleration: Some(vessel(sample.dvel, 1.0)),
             rotation: Some(vessel(sample.dtheta, DEGREE)),
             ..Telegram::default()
-        }
+        };
+        self.begin_utc_ns.map_or(told, |begin_ns| told.at_utc(begin_ns + rounded_ns))
     }
 
     fn stim300(&self, sample: &ImuSample, rotation: Rotation, force_exponent: i32) -> Datagram {
