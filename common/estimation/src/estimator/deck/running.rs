@@ -98,8 +98,11 @@ impl Running {
                 self.deck.forget_velocity();
                 seen = self.deck.observe();
             }
-            let left_out = self.left_out();
-            (0..3).for_each(|axis| seen.noise[(axis, axis)] += left_out);
+            let left_out = (self.left_out(), self.deck.left_out(&self.p));
+            for axis in 0..3 {
+                seen.noise[(axis, axis)] += left_out.0;
+                seen.noise[(VELOCITY_ROW + axis, VELOCITY_ROW + axis)] += left_out.1[axis];
+            }
             let correction = sequential::update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
             self.deck.inject(&correction.error);
             self.surprise.take(correction.surprise);

@@ -32,7 +32,7 @@ use super::{Matching, Observation, Prediction, View, rows_of};
 use crate::align::Lag;
 use crate::flexure::Hull;
 use frames::{Main, Rot, Sub, Vec3};
-use nalgebra::{Matrix3, SMatrix, SVector};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use velocity::Scene;
 
 /// Size of the error state.
@@ -207,6 +207,15 @@ impl Deck {
             theta_rate,
             delay: self.delay,
             liveliest: self.so3.liveliest(),
+        }
+    }
+
+    /// Variance of each velocity that the observation leaves out, m^2/s^2, at the covariance `p`.
+    pub fn left_out(&self, p: &Covariance) -> Vector3<f64> {
+        let now = self.together.filter(|_| self.velocity.as_ref().is_some_and(Velocity::is_begun));
+        match (&self.velocity, now) {
+            (Some(velocity), Some(now)) => velocity.left_out(&self.scene(&now), p),
+            _ => Vector3::zeros(),
         }
     }
 
