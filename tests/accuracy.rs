@@ -124,6 +124,9 @@ fn a_lively_hull_on_a_long_lever_arm_is_not_taken_for_a_delay() {
     let found = runs((1..=8).map(lively).collect());
     let nees: f64 = found.iter().map(|run| run.nees).sum();
     println!("rms arcmin {:.3?}; NEES of 8 seeds {nees:.1} of 24", rms(&found));
+    let outside = found.iter().map(|run| run.deck_outside / run.count).sum::<f64>() / 8.0;
+    println!("deck attitude outside its range: {outside:.3}");
+    assert!(outside < 0.07, "{outside}");
     // 99.9 % of a chi-square with 24 degrees of freedom
     assert!(nees < 51.2, "{nees}");
     assert!(rms(&found).iter().all(|&rms| rms < 1.5), "{:?}", rms(&found));

@@ -22,7 +22,7 @@ use crate::matching::increment::{Increment, Increments};
 use frames::{Main, Rot, Vec3, unit};
 use history::History;
 use messages::{Flags, FlexureParams, ImuPair, Solution};
-use nalgebra::Matrix3;
+use nalgebra::{Matrix3, Vector3};
 use origin::Origin;
 use running::Running;
 use slow::Slow;
@@ -392,7 +392,12 @@ impl DeckEstimator {
         solution.range = std::array::from_fn(|axis| range[axis].max(announced[axis]));
         self.range = solution.range;
         solution.valid = u32::from(!coasting && covariance.diagonal().max() < LOST);
-        attitude_of_deck(&mut solution, pair, deformation, &covariance);
+        // what the waves may hide is hidden in the deck's attitude too
+        let hidden = self.evaluation.hidden().map_or(Matrix3::zeros(), |_| {
+            let told = Vector3::from(range).map(|range| (range / NORMAL_95).powi(2));
+            Matrix3::from_diagonal(&(told - covariance.diagonal()).map(|more| more.max(0.0)))
+        });
+        attitude_of_deck(&mut solution, pair, deformation, &(covariance + hidden));
         solution
     }
 }
