@@ -214,8 +214,8 @@ fn settings(configuration: &Configuration, area: usize) -> estimator::Settings {
     estimator::Settings {
         area: index,
         grade: so3::Grade {
-            main: figures(&configuration.main.gyro),
-            sub: figures(&area.gyro),
+            main: figures(&configuration.main.gyro, area.estimator.bias_doubt),
+            sub: figures(&area.gyro, area.estimator.bias_doubt),
             static_noise: area.estimator.static_rate_noise,
         },
         interval_s: 1.0 / configuration.rate_hz,
@@ -251,10 +251,10 @@ pub fn identifier(configuration: &Configuration, area: usize) -> Box<dyn Identif
     }
 }
 
-fn figures(gyro: &Gyro) -> so3::Gyro {
+fn figures(gyro: &Gyro, bias_doubt: f64) -> so3::Gyro {
     so3::Gyro {
         arw: gyro.arw,
-        bias: gyro.bias,
+        bias: gyro.bias * bias_doubt,
         instability: gyro.instability(),
         scale: gyro.scale,
         misalignment: gyro.misalignment,

@@ -14,7 +14,7 @@
 //! counts as an angular frequency; eq 29 lacks the derivative's dot. The gyro's first-order Markov part is left to the constant's doubt.
 
 use super::constant::Since;
-use super::grade::{Grade, MATCHING_SIGMA, STATIC_RATE_SIGMA};
+use super::grade::{Grade, MATCHING_SIGMA};
 use super::{Motion, Prediction, Start, Turn, View, rows_of, three};
 use crate::flexure::Flexure;
 use frames::{Main, MainStart, Rot, Sub, SubStart};
@@ -67,7 +67,7 @@ impl Angles {
         let mut p = Covariance::zeros();
         p.fixed_view_mut::<3, 3>(STATIC, STATIC).copy_from(&start.covariance);
         for axis in 0..3 {
-            p[(STATIC_RATE + axis, STATIC_RATE + axis)] = STATIC_RATE_SIGMA.powi(2);
+            p[(STATIC_RATE + axis, STATIC_RATE + axis)] = start.grade.static_rate_variance();
             start.flexure[axis].place_stationary(FLEXURE + axis, FLEXURE_RATE + axis, &mut p);
             p[(BIAS + axis, BIAS + axis)] = start.grade.bias_variance();
         }

@@ -9,10 +9,8 @@ pub(super) const MATCHING_SIGMA: f64 = 0.05 * unit::ARCSEC;
 /// To it comes the random walk of so many seconds. With less, the covariance of a coarse unit and this variance lie too far apart for a
 /// double.
 const MATCHING_S: f64 = 0.1;
-/// Standard deviation of the static part's rate at the start, rad/s.
-pub(crate) const STATIC_RATE_SIGMA: f64 = 0.5 * unit::ARCSEC;
-/// Gyro biases may exceed their specification.
-const BIAS_DOUBT: f64 = 3.0;
+/// Standard deviation of the rate of a static part that moves, at the start, rad/s.
+const STATIC_RATE_SIGMA: f64 = 0.5 * unit::ARCSEC;
 /// So much of the scale and misalignment figures is not constant: nonlinearity, asymmetry, sensitivity to acceleration.
 const INCONSTANT: f64 = 0.1;
 /// For how long that part keeps its sign, s: about one turn of the ship, or one movement by hand.
@@ -42,7 +40,7 @@ pub struct Grade {
     pub main: Gyro,
     /// Sub unit.
     pub sub: Gyro,
-    /// Density of the white noise that drives the static part's rate, rad^2/s^3.
+    /// Density of the white noise that drives the static part's rate, rad^2/s^3; without any the static part never moves.
     pub static_noise: f64,
 }
 
@@ -54,7 +52,12 @@ impl Grade {
 
     /// Variance of the relative gyro bias before anything is known of it, rad^2/s^2.
     pub fn bias_variance(&self) -> f64 {
-        (self.main.bias.hypot(self.sub.bias) * BIAS_DOUBT).powi(2)
+        self.main.bias.powi(2) + self.sub.bias.powi(2)
+    }
+
+    /// Variance of the static part's rate at the start, rad^2/s^2.
+    pub fn static_rate_variance(&self) -> f64 {
+        if self.static_noise > 0.0 { STATIC_RATE_SIGMA.powi(2) } else { 0.0 }
     }
 
     /// Writes transition and noise over the time `t` of a static part whose rate white noise drives into those of a larger state with

@@ -23,7 +23,6 @@ pub mod small_angle;
 pub mod so3;
 mod view;
 
-pub(crate) use grade::STATIC_RATE_SIGMA;
 pub use view::View;
 
 use crate::align::Lag;

@@ -27,7 +27,7 @@
 //! (3,2) of the matching matrix give way to the rotation vector. Static part and flexure share one Jacobian, see `so3`.
 
 use super::chain::{self, Chain, Link};
-use super::grade::{MATCHING_SIGMA, STATIC_RATE_SIGMA};
+use super::grade::MATCHING_SIGMA;
 use super::retiming::Together;
 use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
 use crate::align::Lag;
@@ -217,9 +217,8 @@ impl Model<STATES, 3> for Quaternion {
     fn begin(options: &Options, start: &Start) -> (Self, SMatrix<f64, STATES, STATES>) {
         let mut p = SMatrix::<f64, STATES, STATES>::zeros();
         p.fixed_view_mut::<3, 3>(STATIC, STATIC).copy_from(&start.covariance);
-        let static_rate = if start.grade.static_noise > 0.0 { STATIC_RATE_SIGMA } else { 0.0 };
         for axis in 0..3 {
-            p[(STATIC_RATE + axis, STATIC_RATE + axis)] = static_rate * static_rate;
+            p[(STATIC_RATE + axis, STATIC_RATE + axis)] = start.grade.static_rate_variance();
             if !options.rigid {
                 start.flexure[axis].place_stationary(FLEXURE + axis, FLEXURE_RATE + axis, &mut p);
             }

@@ -74,6 +74,8 @@ impl Rival {
         Ok(scenario.with(|c| {
             let (area, told) = (&mut c.areas[0], &preset.areas[0]);
             area.estimator = told.estimator;
+            // what is known of the gyros is the same for all
+            area.estimator.bias_doubt = EstimatorSettings::default().bias_doubt;
             area.installation = told.installation;
             area.identifier = identifier.areas[0].identifier;
         }))

@@ -218,7 +218,10 @@ pub struct EstimatorSettings {
     /// How long to try registering by motion before falling back to the configured installation, s.
     #[serde(deserialize_with = "quantity::registration_s")]
     pub registration_s: f64,
-    /// Density of the noise that drives the rate of the static part, rad^2/s^3.
+    /// So many times their figures the gyros' biases may be.
+    #[serde(deserialize_with = "quantity::bias_doubt")]
+    pub bias_doubt: f64,
+    /// Density of the noise that drives the rate of the static part, rad^2/s^3; 0 says that it never moves.
     #[serde(
         rename = "static_rate_noise_arcsec2_per_s3",
         deserialize_with = "quantity::static_rate_noise_arcsec2_per_s3"
@@ -250,6 +253,7 @@ impl Default for EstimatorSettings {
             range_factor: [1.0; 3],
             filter_hz: 10.0,
             registration_s: 20.0,
+            bias_doubt: 1.0,
             static_rate_noise: 1e-4 * unit::ARCSEC * unit::ARCSEC,
             static_walk: 0.0,
             dynamic_lever_arm: true,

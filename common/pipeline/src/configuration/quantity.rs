@@ -149,6 +149,7 @@ quantities! {
     weight_walk_per_sqrt_s: 1.0, 0.0, 100.0;
     offset_walk_arcsec_per_sqrt_s: unit::ARCSEC, 0.0, 1e4;
     static_walk_arcsec_per_sqrt_h: unit::ARCSEC / 60.0, 0.0, 1e4;
+    bias_doubt: 1.0, 1.0, 100.0;
     static_rate_noise_arcsec2_per_s3: unit::ARCSEC * unit::ARCSEC, 0.0, 1e6;
     weight_sigma: 1.0, 0.0, 10.0;
 

@@ -235,7 +235,7 @@ impl DeckEstimator {
         if pair.flags.contains(Flags::GAP) {
             return;
         }
-        if let Some(origin) = self.last.take().and_then(|last| Origin::resumed(&last, time_ns)) {
+        if let Some(origin) = self.last.take().and_then(|last| Origin::resumed(&self.settings, &last, time_ns)) {
             return self.start(origin, time_ns);
         }
         match Origin::find(&self.settings, &self.registrar, self.delays.as_ref(), waited_s) {

@@ -4,7 +4,6 @@ use super::DeckSettings;
 use crate::align::{DelayRegistrar, Lag, Register, Registrar, Registration};
 use crate::estimator::{REGISTRATION_DOUBT, guess};
 use crate::flexure::Hull;
-use crate::matching::STATIC_RATE_SIGMA;
 use crate::matching::deck::{Covariance, Deck};
 use crate::matching::so3::{self, So3, place};
 use frames::{Rot, Vec3, unit};
@@ -87,12 +86,12 @@ impl Origin {
     }
 
     /// A start from what an estimator that is gone said last; `None` if that is of no use by now. How the hull bends at the moment is not known any more.
-    pub fn resumed(last: &Solution, time_ns: i64) -> Option<Self> {
+    pub fn resumed(settings: &DeckSettings, last: &Solution, time_ns: i64) -> Option<Self> {
         let passed_s = unit::seconds(time_ns.saturating_sub(last.header.time_ns));
         if !last.is_valid() || !(0.0..RESUMABLE_S).contains(&passed_s) {
             return None;
         }
-        let wandered = (STATIC_RATE_SIGMA * passed_s).powi(2);
+        let wandered = settings.area.grade.static_rate_variance() * passed_s * passed_s;
         let covariance = Matrix3::from_row_slice(&last.static_covariance) + Matrix3::identity() * wandered;
         let from = Registration {
             rotation: Rot::from_wxyz(last.static_q),
@@ -120,7 +119,7 @@ impl Origin {
         p.fixed_view_mut::<6, 6>(place::SCALE, place::SCALE).copy_from(&grade.scale_covariance(from.rotation));
         let mut bias = Vector3::zeros();
         for axis in 0..3 {
-            p[(place::STATIC_RATE + axis, place::STATIC_RATE + axis)] = STATIC_RATE_SIGMA.powi(2);
+            p[(place::STATIC_RATE + axis, place::STATIC_RATE + axis)] = grade.static_rate_variance();
             let start = hull.modes[axis].bounded(0.0, LARGEST_START);
             start.place_stationary(place::FLEXURE + axis, place::FLEXURE_RATE + axis, &mut p);
             if let Some(second) = hull.second[axis] {

@@ -11,10 +11,10 @@ use super::DeckSettings;
 use super::surprise::Surprise;
 use crate::filter::sequential;
 use crate::flexure::{Flexure, Hull};
+use crate::matching::Matching;
 use crate::matching::increment::Increment;
 use crate::matching::retiming::Together;
 use crate::matching::so3::{self, Covariance, Rows, So3, place};
-use crate::matching::{Matching, STATIC_RATE_SIGMA};
 use frames::{Main, Rot, Vec3, unit};
 use nalgebra::{Matrix3, Vector3};
 use std::f64::consts::PI;
@@ -104,7 +104,7 @@ impl Slow {
         let mut p = Covariance::zeros();
         for axis in 0..3 {
             p[(place::STATIC + axis, place::STATIC + axis)] = UNKNOWN * UNKNOWN;
-            p[(place::STATIC_RATE + axis, place::STATIC_RATE + axis)] = STATIC_RATE_SIGMA.powi(2);
+            p[(place::STATIC_RATE + axis, place::STATIC_RATE + axis)] = grade.static_rate_variance();
             p[(place::BIAS + axis, place::BIAS + axis)] = grade.bias_variance();
             p[(place::WANDER + axis, place::WANDER + axis)] = grade.wander_variance();
         }
