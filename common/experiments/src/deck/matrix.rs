@@ -13,19 +13,24 @@ pub(super) fn conclude(scenario: &Scenario, trials: &[Option<Measured>]) -> Find
     let trials: Vec<&Measured> = trials.iter().flatten().collect();
     let mut rows = Vec::new();
     for place in (0..scenario.rivals.len()).filter(|_| !trials.is_empty()) {
-        let pairs: Vec<Paired> = trials.iter().filter_map(|trial| trial.rivals[place][0]).collect();
-        rows.extend(rival_rows(scenario, place, &pairs));
+        let rival = &scenario.rivals[place];
+        let pairs: Vec<Paired> = trials.iter().filter_map(|trial| trial.rivals[place].as_it_is).collect();
+        rows.extend(rival_rows(scenario, (rival.id.into(), rival.name.into()), &pairs));
+        if let Some(knowledge) = rival.knowledge() {
+            let pairs: Vec<Paired> = trials.iter().filter_map(|trial| trial.rivals[place].as_knowing).collect();
+            let name = format!("{}, ours told as it is that {}", rival.name, knowledge.what);
+            rows.extend(rival_rows(scenario, (format!("{}-knowing", rival.id), name), &pairs));
+        }
     }
     Findings { rows, figures: Vec::new() }
 }
 
 /// The ratios about each axis and over all, then the upper ends of their intervals.
-fn rival_rows(scenario: &Scenario, place: usize, pairs: &[Paired]) -> Vec<Row> {
-    let rival = &scenario.rivals[place];
+fn rival_rows(scenario: &Scenario, (id, name): (String, String), pairs: &[Paired]) -> Vec<Row> {
     let claim = |key: &str, what: &str, axis: &str, paper: Published, why: &str| Claim {
-        id: format!("deck/{}/{}/{key}/{axis}", scenario.id, rival.id),
+        id: format!("deck/{}/{id}/{key}/{axis}", scenario.id),
         table: format!("{}: RMSE over that of other methods after 5 min, same data", scenario.title),
-        row: format!("{}{what}", rival.name),
+        row: format!("{name}{what}"),
         axis: axis.into(),
         unit: String::new(),
         bound: Bound::None("a method that does worse is no bound".into()),

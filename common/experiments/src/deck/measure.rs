@@ -1,9 +1,10 @@
 //! One trial: the estimator, the same told the truth, and rivals, over the same data.
 
-use super::method::{self, run_blind, run_true};
+use super::method::{self, Knowledge, Rival, run_blind, run_true};
 use super::paired::Paired;
 use super::scenario::Scenario;
 use crate::{Data, Fault, Point, Track, Trial};
+use pipeline::configuration::Configuration;
 use std::ops::RangeInclusive;
 
 /// The spans of time in which errors count, s: after five minutes, and the minutes before.
@@ -24,10 +25,31 @@ pub(super) struct Measured {
     pub truth: [Option<Paired>; 2],
     /// Of the same told of changes of the flexure [`TOLD_LATER_S`] later than they happen, over the one told the truth, after five minutes; only where there are any.
     pub told_later: Option<Paired>,
-    /// Over each rival, by span.
-    pub rivals: Vec<[Option<Paired>; 2]>,
+    /// Over each rival, after five minutes.
+    pub rivals: Vec<Beside>,
     /// The estimator's own figures, then those of the one told the truth.
     pub honesty: [Honesty; 2],
+}
+
+/// The estimator beside another method.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beside {
+    /// As it is.
+    pub as_it_is: Option<Paired>,
+    /// Told what the other takes for known, if there is anything.
+    pub as_knowing: Option<Paired>,
+}
+
+impl Beside {
+    fn of(rival: &Rival, configuration: &Configuration, ours: &Track, data: &Data) -> Result<Self, Fault> {
+        let other = run_blind(&rival.on(configuration)?, data);
+        let over_other = |track: &Track| paired(track, &other)[0];
+        let knowing = |knowledge: Knowledge| run_blind(&method::default(configuration).with(knowledge.tell), data);
+        Ok(Self {
+            as_it_is: over_other(ours),
+            as_knowing: rival.knowledge().and_then(|knowledge| over_other(&knowing(knowledge))),
+        })
+    }
 }
 
 /// What a method says of its own error, against that error.
@@ -84,7 +106,7 @@ pub(super) fn measure(scenario: &Scenario, trial: &Trial) -> Result<Option<Measu
     let truth = run_true(&told, &data, 0.0);
     let changes = !configuration.areas[0].simulation.flexure_changes.is_empty();
     let later = changes.then(|| run_true(&told, &data, TOLD_LATER_S));
-    let rivals = scenario.rivals.iter().map(|rival| Ok(paired(&ours, &run_blind(&rival.on(&configuration)?, &data))));
+    let rivals = scenario.rivals.iter().map(|rival| Beside::of(rival, &configuration, &ours, &data));
     Ok(Some(Measured {
         seed: trial.seed,
         rivals: rivals.collect::<Result<_, Fault>>()?,

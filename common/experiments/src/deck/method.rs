@@ -56,15 +56,39 @@ pub(super) struct Rival {
     preset: &'static str,
     /// Whose identifier it has instead, where the preset's is told the true flexure.
     identifier: Option<&'static str>,
+    /// What it takes for known that the estimator does not.
+    takes_for_known: Option<Knowledge>,
 }
+
+/// Something that no data of a voyage tell, and that a method may be told.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Knowledge {
+    /// In tables: "told that ...".
+    pub what: &'static str,
+    /// Tells it.
+    pub tell: fn(&mut Configuration),
+}
+
+/// A static part that moves by a few arcseconds an hour is to the gyros a bias, and a bias such a motion.
+const STILL: Knowledge =
+    Knowledge { what: "the static part never moves", tell: |c| c.areas[0].estimator.static_rate_noise = 0.0 };
 
 impl Rival {
     const fn new(id: &'static str, name: &'static str, preset: &'static str) -> Self {
-        Self { id, name, preset, identifier: None }
+        Self { id, name, preset, identifier: None, takes_for_known: None }
     }
 
     const fn identified(self, by: &'static str) -> Self {
         Self { identifier: Some(by), ..self }
+    }
+
+    const fn taking_for_known(self, what: Knowledge) -> Self {
+        Self { takes_for_known: Some(what), ..self }
+    }
+
+    /// What it takes for known that the estimator does not.
+    pub(super) fn knowledge(&self) -> Option<Knowledge> {
+        self.takes_for_known
     }
 
     /// The scenario with this method.
@@ -110,4 +134,6 @@ pub(super) const TUFTS_KUMARESAN: &[Rival] = &[
 
 /// Rivals on paper 004, whose own filter is told the true flexure.
 pub(super) const ERROR_RANGE: &[Rival] =
-    &[Rival::new("rate-whittle", "rate matching, Whittle", "error_range_weak_naive").identified("idam_whittle")];
+    &[Rival::new("rate-whittle", "rate matching, Whittle", "error_range_weak_naive")
+        .identified("idam_whittle")
+        .taking_for_known(STILL)];
