@@ -132,6 +132,22 @@ fn a_lively_hull_on_a_long_lever_arm_is_not_taken_for_a_delay() {
     assert!(rms(&found).iter().all(|&rms| rms < 1.5), "{:?}", rms(&found));
 }
 
+/// What the comparisons leave out lasts for more than a hundredth of a second; once the filter that compares so often believed it to be noise, and was a
+/// minute of arc off at a quarter of that.
+#[test]
+fn a_filter_that_compares_at_every_pair_is_not_surer_than_one_at_ten_hertz() {
+    let every_pair = |seed| {
+        let mut configuration = lively(seed);
+        configuration.areas[0].estimator.filter_hz = configuration.rate_hz;
+        configuration
+    };
+    let found = runs((1..=4).map(every_pair).collect());
+    let nees: f64 = found.iter().map(|run| run.nees).sum();
+    println!("rms arcmin {:.3?}; NEES of 4 seeds {nees:.1} of 12", rms(&found));
+    // 99.9 % of a chi-square with 12 degrees of freedom
+    assert!(nees < 32.9, "{nees}");
+}
+
 fn recordings() -> Option<PathBuf> {
     let told = std::env::var_os("DECKFLEX_DATA").map(PathBuf::from);
     let folder = told.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data")).join("mimu4444");

@@ -3,7 +3,7 @@
 use crate::{Data, Fault, Track, presets, run, run_told};
 use frames::unit::nanoseconds;
 use messages::{FlexureParams, Header};
-use pipeline::configuration::{Configuration, EstimatorSettings, IdentifierMethod, IdentifierSettings};
+use pipeline::configuration::{Configuration, DelaySettings, EstimatorSettings, IdentifierMethod, IdentifierSettings};
 
 /// Distance of the points of a track: every pair.
 const EVERY_S: f64 = 0.0;
@@ -69,9 +69,21 @@ pub(super) struct Knowledge {
     pub tell: fn(&mut Configuration),
 }
 
+/// A late stamp looks like a static part where the ship swings about one axis, and most of the doubt about x and y is of that kind.
+const PUNCTUAL: Knowledge = Knowledge { what: "no stamp is late", tell: punctual };
+
 /// A static part that moves by a few arcseconds an hour is to the gyros a bias, and a bias such a motion.
-const STILL: Knowledge =
-    Knowledge { what: "the static part never moves", tell: |c| c.areas[0].estimator.static_rate_noise = 0.0 };
+const STILL: Knowledge = Knowledge {
+    what: "no stamp is late and the static part never moves",
+    tell: |c| {
+        punctual(c);
+        c.areas[0].estimator.static_rate_noise = 0.0;
+    },
+};
+
+fn punctual(c: &mut Configuration) {
+    c.areas[0].estimator.delay = Some(DelaySettings { sigma: 0.0, ..DelaySettings::default() });
+}
 
 impl Rival {
     const fn new(id: &'static str, name: &'static str, preset: &'static str) -> Self {
@@ -108,8 +120,8 @@ impl Rival {
 
 /// Rivals on paper 000.
 pub(super) const IDAM: &[Rival] = &[
-    Rival::new("ekf-rvm", "EKF, RVM", "idam_ekf"),
-    Rival::new("ekf-whittle", "EKF, Whittle", "idam_whittle"),
+    Rival::new("ekf-rvm", "EKF, RVM", "idam_ekf").taking_for_known(PUNCTUAL),
+    Rival::new("ekf-whittle", "EKF, Whittle", "idam_whittle").taking_for_known(PUNCTUAL),
     Rival::new("idam-bayes", "IDAM, Bayes weighting, RVM", "idam_bayes"),
     Rival::new("so3-whittle", "SO(3), Whittle", "idam_so3_whittle"),
 ];

@@ -20,6 +20,9 @@ const LOST: f64 = 30.0;
 const SURPRISE_S: f64 = 60.0;
 const LARGEST_SURPRISE: f64 = 3.0;
 
+/// The noise of a comparison stands for what is left out of the model, which lasts, and does not become less by comparing more often than this, Hz.
+const NOISE_HZ: f64 = 10.0;
+
 /// Model and covariance.
 #[derive(Clone, Debug)]
 pub struct Running {
@@ -103,6 +106,7 @@ impl Running {
                 seen.noise[(axis, axis)] += left_out.0;
                 seen.noise[(VELOCITY_ROW + axis, VELOCITY_ROW + axis)] += left_out.1[axis];
             }
+            seen.noise *= (settings.area.filter_hz / NOISE_HZ).max(1.0);
             let correction = sequential::update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
             self.deck.inject(&correction.error);
             self.surprise.take(correction.surprise);
