@@ -20,6 +20,8 @@ pub struct Textfile {
     path: Option<PathBuf>,
     due_ns: i64,
     failures: u64,
+    /// Whether the last writing failed.
+    failed: bool,
 }
 
 /// A counter of all stages: its name, what it counts, and where it stands.
@@ -43,7 +45,7 @@ impl Textfile {
         if let Some(path) = &path {
             replace(path, "").map_err(LaunchError::output(path))?;
         }
-        Ok(Self { path, due_ns: 0, failures: 0 })
+        Ok(Self { path, due_ns: 0, failures: 0, failed: false })
     }
 
     /// Writes the present state, every five seconds. A disk that is full later is no reason to stop: it is counted in the next file.
@@ -56,7 +58,15 @@ impl Textfile {
         stages(&mut page, collector, set);
         areas(&mut page, collector, now_ns);
         outputs(&mut page, collector);
-        self.failures += u64::from(replace(path, &page.text).is_err());
+        let written = replace(path, &page.text);
+        let (failed, path) = (written.is_err(), path.display());
+        self.failures += u64::from(failed);
+        match written {
+            Ok(()) if self.failed => tracing::info!(%path, failures = self.failures, "the text file is written again"),
+            Err(reason) if !self.failed => tracing::warn!(%path, %reason, "the text file cannot be written"),
+            _ => {}
+        }
+        self.failed = failed;
     }
 
     /// Says that the launch has ended.

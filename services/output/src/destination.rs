@@ -4,7 +4,7 @@ use crate::line::Line;
 use frames::unit::nanoseconds;
 use messages::{Header, OutputState, Solution};
 use pipeline::configuration::{Configuration, Output, Telegrams};
-use runtime::{Latency, monotonic_ns};
+use runtime::{Latency, Throttle, monotonic_ns};
 use telegrams::{Cadence, Report, Track, encode_kmb, instant_ns};
 
 /// The least difference that shows in a sentence.
@@ -25,7 +25,17 @@ pub struct Destination {
     last_utc_ns: i64,
     /// When the next word about silence is due, on the monotonic clock.
     due_ns: i64,
+    logged: Logged,
 }
+
+/// Whether it takes telegrams, as the log has it.
+struct Logged {
+    open: bool,
+    throttle: Throttle,
+}
+
+/// A line that comes and goes is told so often, ns.
+const PAUSE_NS: i64 = 10_000_000_000;
 
 impl Destination {
     /// Opens a destination of the configuration. With `resume` a line that cannot be opened now is opened later.
@@ -57,6 +67,7 @@ impl Destination {
             text: String::with_capacity(output.longest()),
             last_utc_ns: i64::MIN,
             due_ns: monotonic_ns() + nanoseconds(output.silence_s),
+            logged: Logged { open: true, throttle: Throttle::new(PAUSE_NS) },
             output,
         })
     }
@@ -98,6 +109,19 @@ impl Destination {
             self.send(&invalid(now_ns, clock));
             // after a pause of the process there is nothing to catch up with
             self.due_ns = (self.due_ns + self.period_ns).max(now_ns);
+        }
+    }
+
+    /// Tells when the line has been lost or has come back.
+    pub fn log(&mut self, now_ns: i64) {
+        let open = self.line.is_open();
+        if open != self.logged.open && self.logged.throttle.pass(now_ns) {
+            self.logged.open = open;
+            let (to, area, unsendable) = (&self.output.to, &self.output.area, self.state.unsendable);
+            match open {
+                true => tracing::info!(%to, of_area = area, unsendable, "a line takes telegrams again"),
+                false => tracing::warn!(%to, of_area = area, unsendable, "a line does not take telegrams"),
+            }
         }
     }
 
