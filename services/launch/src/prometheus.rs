@@ -126,6 +126,7 @@ fn areas(page: &mut Page, collector: &Collector, now_ns: i64) {
     };
     of_axes("deformation_radians", "Deformation", |last| last.phi);
     of_axes("range_radians", "Half width of the 95 % range of the deformation", |last| last.range);
+    of_axes("zero_radians", "Zero from which the deformation is told", |last| last.zero);
 }
 
 fn outputs(page: &mut Page, collector: &Collector) {
@@ -136,6 +137,7 @@ fn outputs(page: &mut Page, collector: &Collector) {
     };
     all("output_sent_total", "Telegrams that went out", "counter", |row| row.telegrams.sent as f64);
     all("output_invalid_total", "Telegrams that said invalid", "counter", |row| row.telegrams.invalid as f64);
+    all("output_zeroed_total", "Telegrams told from a zero", "counter", |row| row.telegrams.zeroed as f64);
     all("output_unsendable_total", "Telegrams not taken by the line", "counter", |row| row.telegrams.unsendable as f64);
     all("output_withheld_total", "Telegrams too old or not later", "counter", |row| row.telegrams.withheld as f64);
     all("output_open", "Whether the line takes telegrams", "gauge", |row| truth(row.open));
