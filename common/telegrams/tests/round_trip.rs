@@ -77,6 +77,7 @@ fn rates_of_turn_come_back() {
 fn deformations_come_back_to_a_fraction_of_an_arcsecond() {
     for report in reports() {
         let text = written(Sentence::Xdr, &report);
+        assert!(text.len() <= Sentence::Xdr.longest(STYLE.decimals, report.zero.is_some()), "{text}");
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), if report.zero.is_some() { 3 } else { 2 });
         for (line, name) in lines.iter().zip(["DEF", "RNG", "ZER"]) {

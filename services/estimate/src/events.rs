@@ -127,7 +127,7 @@ impl Events {
     pub fn see(&mut self, solution: &Solution) {
         let time_ns = solution.header.time_ns;
         let before = self.seen.replace(solution.flags).unwrap_or(HAPPENINGS);
-        let come = solution.flags & HAPPENINGS - before;
+        let come = (solution.flags & HAPPENINGS) - before;
         if !come.is_empty() {
             let come = self.happenings.iter_mut().filter(|happening| come.contains(happening.flag));
             come.for_each(|happening| happening.see(time_ns));
