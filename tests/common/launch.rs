@@ -136,7 +136,8 @@ impl Launch {
         Ended { status, out: self.out.clone(), errors: self.errors(), report, domains }
     }
 
-    fn errors(&self) -> String {
+    /// What stands on the error output by now.
+    pub fn errors(&self) -> String {
         fs::read_to_string(&self.errors).unwrap()
     }
 }
