@@ -1,6 +1,8 @@
 //! The command line.
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
+use pipeline::configuration::LogLevel;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -183,6 +185,9 @@ pub struct LaunchArgs {
     /// Record everything there, whatever folder the table `record` names
     #[arg(long, value_name = "DIR")]
     pub record: Option<PathBuf>,
+    /// The least that is logged, whatever the table `log` says
+    #[arg(long, value_name = "LEVEL", value_parser = log_level())]
+    pub log: Option<LogLevel>,
 }
 
 #[derive(Args)]
@@ -217,6 +222,9 @@ pub struct RunArgs {
     pub resume: bool,
     #[arg(long, value_parser = humantime::parse_duration)]
     pub duration: Option<Duration>,
+    /// The least that is logged, whatever the table `log` says
+    #[arg(long, value_name = "LEVEL", value_parser = log_level())]
+    pub log: Option<LogLevel>,
 }
 
 #[derive(Args)]
@@ -270,6 +278,11 @@ pub struct AreaArgs {
     /// Name of the area
     #[arg(long)]
     pub area: String,
+}
+
+fn log_level() -> impl TypedValueParser<Value = LogLevel> {
+    let level = |name: String| LogLevel::ALL.into_iter().find(|level| level.name() == name).ok_or("no such level");
+    PossibleValuesParser::new(LogLevel::ALL.map(LogLevel::name)).try_map(level)
 }
 
 /// Two times with two dots between them, s.

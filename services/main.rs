@@ -2,6 +2,7 @@
 
 mod arguments;
 mod exit;
+mod log;
 
 use arguments::{
     AreaArgs, Cli, Command, KvhFormat, LaunchArgs, RecordArgs, RunArgs, SimulateArgs, StageArgs, WireArgs,
@@ -11,7 +12,6 @@ use exit::Refusal;
 use pipeline::configuration::Configuration;
 use runtime::{Context, TransportError};
 use std::error::Error;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -32,7 +32,7 @@ fn main() -> ExitCode {
             reproduce(&reproduce::Options { selection, plan, json, report, threads })
         }
         Command::Simulate(args) => simulate(args),
-        Command::Acquire(args) => stage(&args, acquire::run),
+        Command::Acquire(args) => stage("acquire", &args, acquire::run),
         Command::Recover { recording, out } => recover(&recording, out.as_deref()),
         Command::Report { recording, out } => report(&recording, out.as_deref()),
         Command::Export { recording, out } => export(&recording, &out),
@@ -47,11 +47,11 @@ fn main() -> ExitCode {
         }
         #[cfg(feature = "foxglove")]
         Command::Live { configuration, listen } => live(&live::Options { configuration, listen }),
-        Command::Replay(args) => stage(&args, replay::run),
-        Command::Synchronise(args) => of_area(&args, synchronise::run),
-        Command::Estimate(args) => of_area(&args, estimate::run),
-        Command::Identify(args) => of_area(&args, identify::run),
-        Command::Output(args) => stage(&args, output::run),
+        Command::Replay(args) => stage("replay", &args, replay::run),
+        Command::Synchronise(args) => of_area("synchronise", &args, synchronise::run),
+        Command::Estimate(args) => of_area("estimate", &args, estimate::run),
+        Command::Identify(args) => of_area("identify", &args, identify::run),
+        Command::Output(args) => stage("output", &args, output::run),
         Command::Record(args) => record(&args),
     };
     outcome.unwrap_or_else(|error| exit::failed(error.as_ref()))
@@ -66,7 +66,7 @@ fn read(path: &Path, duration: Option<Duration>) -> Result<Configuration, Box<dy
 }
 
 fn launch(args: LaunchArgs) -> Outcome {
-    let LaunchArgs { configuration: path, duration, json, hlog, out, prometheus, record } = args;
+    let LaunchArgs { configuration: path, duration, json, hlog, out, prometheus, record, log } = args;
     let mut configuration = read(&path, duration)?;
     record.iter().for_each(|folder| configuration.record_in(folder));
     // before any process starts
@@ -76,8 +76,12 @@ fn launch(args: LaunchArgs) -> Outcome {
     }
     let duration_s = duration.map(|d| d.as_secs_f64());
     let program = std::env::current_exe()?;
-    let options = launch::Options { program, configuration: path, duration_s, out, record, hlog, prometheus };
-    let report = launch::run(&configuration, &options)?;
+    let logged = log::start(configuration.log, log, "launch", None);
+    let options = launch::Options { program, configuration: path, duration_s, out, record, hlog, prometheus, log };
+    let report = launch::run(&configuration, &options);
+    // what has been logged stands above the report, or the error
+    drop(logged);
+    let report = report?;
     print!("{report}");
     if let Some(json) = json {
         std::fs::write(json, serde_json::to_string_pretty(&report)? + "\n")?;
@@ -137,13 +141,10 @@ fn report(recording: &Path, out: Option<&Path>) -> Outcome {
 }
 
 fn record(args: &RecordArgs) -> Outcome {
-    stage(&args.stage, |configuration, context| {
+    stage("record", &args.stage, |configuration, context| {
         let mut configuration = configuration.clone();
         args.folder.iter().for_each(|folder| configuration.record_in(folder));
-        record::run(&configuration, context, |line| {
-            // a log on the disk that is full must not end the recorder
-            let _ = writeln!(std::io::stderr(), "deckflex record: {line}");
-        })
+        record::run(&configuration, context)
     })
 }
 
@@ -171,6 +172,7 @@ fn monitor(options: &monitor::Options) -> Outcome {
 
 #[cfg(feature = "foxglove")]
 fn live(options: &live::Options) -> Outcome {
+    use std::io::Write;
     let report = live::run(options, |line| {
         let _ = writeln!(std::io::stderr(), "deckflex live: {line}");
     })?;
@@ -179,10 +181,21 @@ fn live(options: &live::Options) -> Outcome {
 }
 
 fn stage<E: Into<Box<dyn Error>>>(
+    name: &str,
+    args: &StageArgs,
+    run: impl Fn(&Configuration, &Context) -> Result<(), E>,
+) -> Outcome {
+    of_whom(name, None, args, run)
+}
+
+fn of_whom<E: Into<Box<dyn Error>>>(
+    name: &str,
+    area: Option<&str>,
     args: &StageArgs,
     run: impl Fn(&Configuration, &Context) -> Result<(), E>,
 ) -> Outcome {
     let configuration = read(&args.configuration, args.run.duration)?;
+    let _log = log::start(configuration.log, args.run.log, name, area);
     run(&configuration, &context(&configuration, args)).map_err(Into::into)?;
     Ok(ExitCode::SUCCESS)
 }
@@ -190,7 +203,7 @@ fn stage<E: Into<Box<dyn Error>>>(
 fn simulate(args: SimulateArgs) -> Outcome {
     let SimulateArgs { configuration, wire, wires, domain, run } = args;
     let Some(domain) = domain.filter(|_| !wire) else { return emulate(&configuration, run.duration, wires) };
-    stage(&StageArgs { configuration, domain, run }, simulate::run)
+    stage("simulate", &StageArgs { configuration, domain, run }, simulate::run)
 }
 
 fn emulate(path: &Path, duration: Option<Duration>, wires: WireArgs) -> Outcome {
@@ -212,8 +225,12 @@ fn emulate(path: &Path, duration: Option<Duration>, wires: WireArgs) -> Outcome 
     Ok(ExitCode::SUCCESS)
 }
 
-fn of_area(args: &AreaArgs, run: fn(&Configuration, usize, &Context) -> Result<(), TransportError>) -> Outcome {
-    stage::<Box<dyn Error>>(&args.stage, |configuration, context| {
+fn of_area(
+    name: &str,
+    args: &AreaArgs,
+    run: fn(&Configuration, usize, &Context) -> Result<(), TransportError>,
+) -> Outcome {
+    of_whom::<Box<dyn Error>>(name, Some(&args.area), &args.stage, |configuration, context| {
         let area = configuration.areas.iter().position(|area| area.name == args.area);
         let area = area.ok_or_else(|| Refusal::NoSuchArea(args.area.clone()))?;
         Ok(run(configuration, area, context)?)

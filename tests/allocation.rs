@@ -1,10 +1,12 @@
 //! The fast steps allocate nothing once they are warm.
 #![allow(clippy::unwrap_used)]
 
+use estimate::Events;
 use messages::Flags;
 use pipeline::configuration::{Configuration, MatchingMethod};
 use pipeline::lane;
 use pipeline::source::{Batch, Source};
+use runtime::log::{Level, Log, Settings, Speaker, To};
 use simulation::Simulator;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -79,14 +81,18 @@ fn the_counter_counts() {
     assert_eq!((sum, kept.len()), (2, 5));
 }
 
+/// With a log as it is in a run: a new set every few seconds is none of its words at this level, and no sample is.
 #[test]
 fn synchroniser_and_estimator_allocate_nothing() {
+    let speaker = Speaker { stage: "estimate".into(), area: Some("radar".into()) };
+    let _log = Log::start(Settings { level: Level::Info, to: To::Stderr, speaker });
     for seed in 1..=3 {
         let configuration = demo(seed);
         let mut source = Source::open(&configuration, 0).unwrap();
         let mut synchroniser = lane::synchroniser(&configuration, 0);
         let mut estimator = lane::estimator(&configuration, 0);
         let mut identifier = lane::identifier(&configuration, 0);
+        let mut events = Events::default();
         let mut batch = Batch::default();
         let (mut synchronise, mut estimate, mut pairs, mut sets) = (0, 0, 0, 0);
         for k in 0..WARM_UP + MEASURED {
@@ -101,7 +107,12 @@ fn synchroniser_and_estimator_allocate_nothing() {
                 batch.sub.iter().for_each(|sample| synchroniser.sub(sample));
             });
             while let Some(pair) = counted(&mut synchronise, || synchroniser.pair()) {
-                let solution = counted(&mut estimate, || estimator.step(&pair));
+                // what the log has to be told of it included
+                let solution = counted(&mut estimate, || {
+                    let solution = estimator.step(&pair);
+                    events.see(&solution);
+                    solution
+                });
                 pairs += 1;
                 if k >= WARM_UP {
                     assert!(solution.is_valid() && solution.params_id > 0, "seed {seed}: {}", solution.flags.names());
@@ -109,7 +120,10 @@ fn synchroniser_and_estimator_allocate_nothing() {
                 }
                 if let Some(parameters) = identifier.step(&pair, &solution) {
                     sets += 1;
-                    counted(&mut estimate, || estimator.offer(parameters));
+                    counted(&mut estimate, || {
+                        estimator.offer(parameters);
+                        events.offer(&parameters);
+                    });
                 }
             }
         }

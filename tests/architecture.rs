@@ -157,8 +157,14 @@ fn the_transport_and_the_command_line_stand_in_one_place_each() {
     assert_eq!(workspace.importers("clap"), ["deckflex"]);
     // by import and not by tree: recordings are read by a library that counts processors
     let of_common = workspace.within("common");
-    let calls: Vec<&str> = workspace.importers("libc").into_iter().filter(|name| of_common.contains(name)).collect();
-    assert_eq!(calls, ["deckflex-runtime"]);
+    let of_common = |import: &str| -> Vec<&str> {
+        workspace.importers(import).into_iter().filter(|name| of_common.contains(name)).collect()
+    };
+    assert_eq!(of_common("libc"), ["deckflex-runtime"]);
+    // whoever speaks in `common` is the shell, and it alone knows where what is said goes
+    assert_eq!(of_common("tracing"), ["deckflex-runtime"]);
+    assert_eq!(of_common("log"), [""; 0]);
+    assert!(workspace.importers("tracing").len() > 3, "the stages speak too");
 }
 
 /// No stage of a live run is linked with what draws and tabulates.
@@ -186,7 +192,7 @@ fn sources(folder: &Path) -> Vec<PathBuf> {
 
 /// Comments may speak of clocks; code may not read them. `Duration` is a mere number.
 #[test]
-fn only_the_shell_has_clocks_and_threads() {
+fn only_the_shell_has_clocks_threads_and_a_voice() {
     let mut lines = 0;
     for name in
         ["frames", "messages", "estimation", "simulation", "recording", "wire", "telegrams", "pipeline", "experiments"]
@@ -195,8 +201,9 @@ fn only_the_shell_has_clocks_and_threads() {
             for (number, line) in fs::read_to_string(&file).unwrap().lines().enumerate() {
                 let code = line.split("//").next().unwrap();
                 let words: Vec<&str> = code.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
-                let found =
-                    words.iter().find(|word| ["Instant", "SystemTime", "thread", "sleep", "libc"].contains(word));
+                let shell =
+                    ["Instant", "SystemTime", "thread", "sleep", "libc", "tracing", "println", "eprintln", "dbg"];
+                let found = words.iter().find(|word| shell.contains(word));
                 assert_eq!(found, None, "{}:{}: {line}", file.display(), number + 1);
                 lines += 1;
             }

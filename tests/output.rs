@@ -65,7 +65,8 @@ fn telegrams_tell_the_solutions_at_their_rates() {
         udp(&text, "\"HDT\", \"ROT\", \"PASHR\", \"XDR\"", "rate_hz = 10\ndecimals = 3\nsilence_ms = 10000"),
         serial(&full.device, "\"PASHR\", \"XDR\"", "rate_hz = 100\nsilence_ms = 10000"),
     ];
-    let configuration = place.write("outputs.toml", &(demo(11, 1.0) + &outputs.concat()));
+    let zeroed = demo(11, 1.0).replacen("name = \"radar\"\n", "name = \"radar\"\nzero_deg = [0.1, -0.25, 1.5]\n", 1);
+    let configuration = place.write("outputs.toml", &(zeroed + &outputs.concat()));
     let ended = Launch::start(&place, "live", &configuration, Some("12s")).end();
     let report = ended.well();
     let rows = rows(&ended);
@@ -102,6 +103,7 @@ fn telegrams_tell_the_solutions_at_their_rates() {
     assert_eq!(report["outputs"][0]["sent"], telegrams.len());
     assert_eq!(report["outputs"][1]["sent"], datagrams.len());
     for output in [0, 1] {
+        assert_eq!(report["outputs"][output]["zeroed"], report["outputs"][output]["sent"]);
         assert_eq!(
             (&report["outputs"][output]["unsendable"], &report["outputs"][output]["withheld"]),
             (&0.into(), &0.into())
@@ -123,7 +125,9 @@ fn telegrams_tell_the_solutions_at_their_rates() {
 fn assert_tells(datagram: &[u8], binary: Binary, solutions: &BTreeMap<i64, &Vec<String>>) -> bool {
     let text = std::str::from_utf8(datagram).unwrap();
     let lines: Vec<&str> = text.lines().collect();
-    let [hdt, rot, pashr, deformation, range] = lines[..] else { panic!("{text}") };
+    let [hdt, rot, pashr, deformation, range, zero] = lines[..] else { panic!("{text}") };
+    // that one is in force is told while nothing is valid too
+    assert_eq!(parse_nmea_sentence(zero).unwrap().data, "A,0.10000,D,ZERX,A,-0.25000,D,ZERY,A,1.50000,D,ZERZ");
     let Ok(ParseResult::HDT(heading)) = parse_str(hdt) else { panic!("{hdt}") };
     assert_eq!(heading.heading.is_some(), binary.is_valid(), "{text}");
     let turn = parse_nmea_sentence(rot).unwrap();

@@ -189,6 +189,41 @@ fn a_killed_acquire_goes_on_with_the_same_numbers() {
     assert!(hole > 0.5, "the clock filter settles anew, {hole} s");
 }
 
+/// The log names the units, how long they were silent, and that their clocks are others when they are back.
+#[test]
+fn units_that_fall_silent_and_come_back_are_told_by_the_log() {
+    let place = Place::new();
+    let configuration = place.write("wires.toml", &wires(&place, ["", ""]));
+    let _alone = one_at_a_time();
+    let emulator = Emulator::start(&place, &configuration, &[]);
+    let mut launch = Launch::start(&place, "out", &configuration, None);
+    launch.eventually("solutions", |launch| launch.written("radar"));
+    let both = |words: &str, launch: &Launch| {
+        let errors = launch.errors();
+        ["unit=main", "unit=radar"]
+            .iter()
+            .all(|unit| errors.lines().any(|line| line.contains(words) && line.contains(unit)))
+            .then_some(())
+    };
+    drop(emulator);
+    launch.eventually("word of the silence", |launch| both("nothing comes on the wire any more", launch));
+    let _emulator = Emulator::start(&place, &configuration, &[]);
+    launch.eventually("word of their return", |launch| both("the device's clock has started anew", launch));
+    launch.signal(SIGINT);
+    let ended = launch.end();
+    ended.well();
+    assert_eq!(ended.not_logged(), "");
+    for unit in ["unit=main", "unit=radar"] {
+        let silent =
+            ended.logged("WARN", "acquire", &["nothing comes on the wire any more", unit, "port=", "silent_s="]);
+        let back = ended.logged("INFO", "acquire", &["the wire speaks again", unit]);
+        let known = ended.logged("INFO", "acquire", &["the device's clock is known", unit, "skew_ppm=", "jitter_us="]);
+        assert!((silent.len(), back.len()) == (1, 1) && !known.is_empty(), "{unit}: {}", ended.errors);
+    }
+    let closed = ended.logged("WARN", "acquire", &["the port is closed", "unit=radar", "reason="]);
+    assert!(!closed.is_empty(), "{}", ended.errors);
+}
+
 /// All solutions of a configuration, with the main INS's heading reset by 90 degrees 15 s before the end where that is asked for.
 fn solutions(configuration: &Configuration, reset: bool) -> Vec<Solution> {
     let mut source = Source::open(configuration, 0).unwrap();

@@ -52,12 +52,17 @@ pub struct Process {
 impl Launch {
     /// `deckflex launch`, its output in the folder `name` of the place.
     pub fn start(place: &Place, name: &str, configuration: &Path, duration: Option<&str>) -> Self {
+        Self::start_with(place, name, configuration, duration, &[])
+    }
+
+    /// With further arguments.
+    pub fn start_with(place: &Place, name: &str, configuration: &Path, duration: Option<&str>, more: &[&str]) -> Self {
         let out = place.path(name);
         fs::create_dir(&out).unwrap();
         let (json, errors) = (out.join("report.json"), out.join("errors.txt"));
         let mut command = place.deckflex();
         command.arg("launch").arg(configuration).arg("--json").arg(&json).arg("--out").arg(&out);
-        command.args(duration.iter().flat_map(|duration| ["--duration", duration]));
+        command.args(duration.iter().flat_map(|duration| ["--duration", duration])).args(more);
         // a file, since a pipe would stay open as long as one of the stages lives
         command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(File::create(&errors).unwrap());
         let child = command.spawn().unwrap();
@@ -131,7 +136,8 @@ impl Launch {
         Ended { status, out: self.out.clone(), errors: self.errors(), report, domains }
     }
 
-    fn errors(&self) -> String {
+    /// What stands on the error output by now.
+    pub fn errors(&self) -> String {
         fs::read_to_string(&self.errors).unwrap()
     }
 }
@@ -162,6 +168,21 @@ impl Ended {
             assert!(!root.exists(), "{} is left: {}", root.display(), self.errors);
             assert_eq!(in_shared_memory(root), Vec::<PathBuf>::new(), "{}", self.errors);
         }
+    }
+
+    /// What stands on the error output and is no line of the log: errors, panics.
+    pub fn not_logged(&self) -> String {
+        let levels = ["DEBUG ", "INFO  ", "WARN  "];
+        let is_logged =
+            |line: &&str| line.split_once("Z ").is_some_and(|(_, rest)| levels.iter().any(|l| rest.starts_with(l)));
+        self.errors.lines().filter(|line| !is_logged(line)).collect()
+    }
+
+    /// The lines of the log of a process (`estimate/radar`) at a level that hold all of the words.
+    pub fn logged(&self, level: &str, process: &str, words: &[&str]) -> Vec<&str> {
+        let begin = format!("Z {level:<5} {process}: ");
+        let holds = |line: &&str| line.contains(&begin) && words.iter().all(|word| line.contains(word));
+        self.errors.lines().filter(holds).collect()
     }
 
     pub fn solutions(&self, area: &str) -> String {

@@ -16,6 +16,8 @@ pub struct OutputState {
     pub unsendable: u64,
     /// Telegrams that were not sent because they were too old or not later than the one before.
     pub withheld: u64,
+    /// Of those that went out, those whose area has a zero in force.
+    pub zeroed: u64,
     /// UTC minus the host's monotonic clock, as used at present, ns.
     pub utc_offset_ns: i64,
     /// Age of the measurement behind it, ns.
@@ -40,7 +42,7 @@ pub struct OutputState {
     pub open: u32,
 }
 
-message!(OutputState, "deckflex/OutputState/1");
+message!(OutputState, "deckflex/OutputState/2");
 
 /// Where UTC comes from: the values of [`OutputState::utc_source`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

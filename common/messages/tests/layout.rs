@@ -30,7 +30,7 @@ fn layouts_are_as_published() {
     layout!(LineHealth, "deckflex/LineHealth/2", 248, arrival_ns @ 80, device_ns @ 88, skew @ 96, sigma @ 112, good @ 120,
         overflow @ 200, opened @ 216, utc_offset_ns @ 224, utc_at_ns @ 232, unit @ 240, settled @ 244);
     layout!(Health, "deckflex/Health/2", 176, taken @ 80, late @ 136, stage @ 152, pid @ 168, alarms @ 172);
-    layout!(OutputState, "deckflex/OutputState/1", 192, sent @ 80, utc_offset_ns @ 120, delay_p50_ns @ 152, utc_source @ 176, open @ 188);
+    layout!(OutputState, "deckflex/OutputState/2", 200, sent @ 80, zeroed @ 120, utc_offset_ns @ 128, delay_p50_ns @ 160, utc_source @ 184, open @ 196);
 }
 
 #[test]

@@ -1,5 +1,6 @@
+use crate::growth::Growth;
 use crate::{Domain, Node, Publisher, TransportError, monotonic_ns};
-use messages::{Header, Health, Stage, State, topic};
+use messages::{Header, Health, Scheduling, Stage, State, topic};
 
 const PERIOD_NS: i64 = 1_000_000_000;
 
@@ -44,6 +45,7 @@ pub struct Beat {
     pub health: Health,
     publisher: Publisher<Health>,
     last_ns: i64,
+    growth: Growth,
 }
 
 impl Beat {
@@ -57,7 +59,7 @@ impl Beat {
             pid: std::process::id(),
             ..Health::default()
         };
-        Ok(Self { health, publisher, last_ns: monotonic_ns() })
+        Ok(Self { health, publisher, last_ns: monotonic_ns(), growth: Growth::new() })
     }
 
     /// Notes the main sample that was handled last: its number, its time and the clock of that time.
@@ -72,6 +74,8 @@ impl Beat {
     /// # Errors
     /// As [`Publisher::publish`].
     pub fn ready(&mut self) -> Result<(), TransportError> {
+        let scheduling = Scheduling::from_code(self.health.scheduling).map_or("unknown", Scheduling::name);
+        tracing::debug!(pid = self.health.pid, scheduling, "ready");
         self.publish(State::Ready, monotonic_ns())
     }
 
@@ -98,6 +102,15 @@ impl Beat {
     fn publish(&mut self, state: State, now_ns: i64) -> Result<(), TransportError> {
         self.health.state = state as u32;
         self.last_ns = now_ns;
+        self.growth.see(&self.health, now_ns);
         self.publisher.publish(&self.health).map(|_| ())
+    }
+}
+
+impl Drop for Beat {
+    fn drop(&mut self) {
+        self.growth.end(&self.health);
+        let Health { taken, given, state, .. } = self.health;
+        tracing::debug!(taken, given, ended = state == State::Ended as u32, "stopped");
     }
 }

@@ -10,7 +10,7 @@
 //! | `PASHR` | UTC, heading, roll, pitch, their sigmas | empty fields, quality 0 |
 //! | `PRDID` | pitch, roll, heading | empty fields |
 //! | `PHTRO` | pitch, roll, each with a letter for its sign | empty fields |
-//! | `--XDR` | deformation about x, y, z and its 95 % range, five decimals | empty fields |
+//! | `--XDR` | deformation about x, y, z and its 95 % range, five decimals; the zero where one is in force | empty fields |
 //! | KMB | UTC in nanoseconds, attitude, rates, sigmas | status bits |
 
 mod attitude;

@@ -20,6 +20,8 @@ pub struct Report {
     pub attitude: Option<Attitude>,
     /// The deformation; `None` when it is invalid.
     pub deformation: Option<Deformation>,
+    /// Rotation vector of the zero in force, rad: attitude and deformation are told from it; `None` without one.
+    pub zero: Option<[f64; 3]>,
     /// Valid, but carried forward or of less trust than usual.
     pub reduced: bool,
 }

@@ -19,7 +19,8 @@ pub enum Sentence {
     /// iXblue: `$PHTRO,pitch,M or P,roll,B or T*hh` without signs: `M` bow up, `P` bow down, `B` port side down, `T` port side up.
     Phtro,
     /// Deformation, `$--XDR` with the transducers `DEFX`, `DEFY`, `DEFZ`, then half its 95 % range with `RNGX`, `RNGY`, `RNGZ`: degrees
-    /// about the main unit's axes to starboard, to the bow and up, five decimals.
+    /// about the main unit's axes to starboard, to the bow and up, five decimals. Where the deformation is told from a zero, that zero
+    /// follows in the same way with `ZERX`, `ZERY`, `ZERZ`; it is in force whether the deformation is valid or not.
     Xdr,
 }
 
@@ -51,15 +52,15 @@ impl Sentence {
         }
     }
 
-    /// The most bytes that it takes with so many decimals.
-    pub fn longest(self, decimals: usize) -> usize {
+    /// The most bytes that it takes with so many decimals, where a zero is in force or not.
+    pub fn longest(self, decimals: usize, zeroed: bool) -> usize {
         match self {
             Self::Hdt => 18 + decimals,
             Self::Rot => 20 + decimals,
             Self::Pashr => 67 + 3 * decimals,
             Self::Prdid => 28 + 3 * decimals,
             Self::Phtro => 25 + 2 * decimals,
-            Self::Xdr => 71 + 68,
+            Self::Xdr => 71 + 68 + if zeroed { 71 } else { 0 },
         }
     }
 
@@ -78,6 +79,9 @@ impl Sentence {
                 let range = report.deformation.map(|deformation| deformation.range);
                 framed(text, |b| xdr(b, talker, "DEF", angles));
                 framed(text, |b| xdr(b, talker, "RNG", range));
+                if let Some(zero) = report.zero {
+                    framed(text, |b| xdr(b, talker, "ZER", Some(zero)));
+                }
             }
         }
     }

@@ -16,6 +16,8 @@ pub struct Moment {
     pub attitude: Option<Attitude>,
     /// The deformation at the solution's own instant; `None` when it is not valid.
     pub deformation: Option<Deformation>,
+    /// Rotation vector of the zero in force, rad; `None` without one.
+    pub zero: Option<[f64; 3]>,
     /// Whether the attitude was carried forward.
     pub extrapolated: bool,
     /// Whether the solution is of less trust than usual.
@@ -25,8 +27,8 @@ pub struct Moment {
 impl Moment {
     /// The same as a report, when its instant is this one in UTC, ns since 1970.
     pub fn report(&self, utc_ns: i64) -> Report {
-        let Self { attitude, deformation, .. } = *self;
-        Report { utc_ns, attitude, deformation, reduced: self.extrapolated || self.less_trusted }
+        let Self { attitude, deformation, zero, .. } = *self;
+        Report { utc_ns, attitude, deformation, zero, reduced: self.extrapolated || self.less_trusted }
     }
 }
 
@@ -59,6 +61,7 @@ impl Track {
             instant_ns: instant_ns + at_ns - time_ns,
             attitude: found.map(|(attitude, _)| attitude),
             deformation: deformation(solution),
+            zero: solution.flags.contains(Flags::ZEROED).then_some(solution.zero),
             extrapolated: found.is_some() && (at_ns != time_ns || !own),
             less_trusted: solution.flags.intersects(LESS_TRUSTED),
         }

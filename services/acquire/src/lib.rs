@@ -4,6 +4,7 @@
 //! clock and publishes each sample as it comes.
 
 mod error;
+mod events;
 mod keeper;
 mod piece;
 mod reader;
@@ -52,7 +53,7 @@ pub fn run(configuration: &Configuration, context: &Context) -> Result<(), Acqui
                 if hopeless && units[unit].never_open() {
                     return Err(AcquireError::Port { unit: units[unit].name.clone(), reason });
                 }
-                units[unit].fault = Some(reason);
+                units[unit].fail(reason);
             }
             Ok(News::Ended { unit }) => units[unit].ended = true,
             Err(RecvTimeoutError::Timeout) => {}

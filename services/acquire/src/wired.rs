@@ -1,6 +1,7 @@
 //! A unit on its wire, from the bytes to the published sample.
 
 use crate::AcquireError;
+use crate::events::Events;
 use crate::piece::Piece;
 use crate::reader::{Common, Reader};
 use frames::{Case, Main, Nav, Rot};
@@ -23,6 +24,7 @@ pub struct Wired {
     unit: Unit,
     reader: Reader,
     health: LineHealth,
+    events: Events,
     publisher: Publisher<LineHealth>,
 }
 
@@ -71,6 +73,7 @@ impl Wired {
             unit: Unit::new(settings),
             reader: Reader::start(place, line, common.clone(), context)?,
             health: LineHealth { unit: place as u32, ..LineHealth::default() },
+            events: Events::new(),
             publisher: Publisher::open(node, &topic::line(area))?,
         })
     }
@@ -78,6 +81,12 @@ impl Wired {
     /// Whether the port has not been open yet.
     pub fn never_open(&self) -> bool {
         self.reader.counts.opened.load(Ordering::Relaxed) == 0
+    }
+
+    /// Notes that the port cannot be opened, or has broken off.
+    pub fn fail(&mut self, reason: String) {
+        tracing::warn!(unit = self.name, port = self.port, reason, "the port is closed");
+        self.fault = Some(reason);
     }
 
     /// Takes bytes and publishes the samples in them.
@@ -131,6 +140,7 @@ impl Wired {
             ..before
         };
         let now = &self.health;
+        self.events.see(&self.name, &self.port, &before, now);
         let stage = feed.health();
         stage.missing += now.lost - before.lost;
         stage.refused +=

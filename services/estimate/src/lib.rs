@@ -1,13 +1,16 @@
 //! `deckflex estimate`: one solution a pair, valid or not.
 
 mod checkpoint;
+mod events;
+
+pub use events::Events;
 
 use checkpoint::{Checkpoint, Keeper};
 use messages::{Flags, FlexureParams, ImuPair, Solution, Stage, topic};
 use pipeline::alarm::AlarmWatch;
 use pipeline::configuration::Configuration;
 use pipeline::lane;
-use runtime::{Area, Context, Publisher, Sequence, Subscriber, TransportError, Waiter, monotonic_ns};
+use runtime::{Area, Context, Publisher, Sequence, Subscriber, Supply, TransportError, Waiter, monotonic_ns};
 use std::time::Duration;
 
 /// How long a sleep may last without data.
@@ -32,6 +35,7 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
     let mut estimator = lane::estimator(configuration, area);
     let mut offered = before.and_then(|before| before.parameters());
     if let Some(before) = before {
+        tracing::info!(with_model = offered.is_some(), "goes on from what the estimator before it kept");
         estimator.resume(&before.solution());
     }
     if let Some(set) = offered {
@@ -39,12 +43,14 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
     }
     let mut sequence = Sequence::default();
     let mut alarms = AlarmWatch::new(configuration.areas[area].alarm.as_ref());
+    let (mut events, mut supply) = (Events::default(), Supply::new("pairs"));
     let mut valid_ns = monotonic_ns();
     let beat = &mut connection.beat;
     beat.ready()?;
     let mut waiter = Waiter::new();
     while !stop.requested() {
         waiter.wait(&[&pairs], NAP)?;
+        let before = beat.health.taken;
         while let Some(pair) = pairs.take()? {
             if pair.header.is_end() {
                 solutions.publish(&Solution { header: pair.header, area: place.index, ..Solution::default() })?;
@@ -52,6 +58,7 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
             }
             while let Some(set) = parameters.take()? {
                 estimator.offer(set);
+                events.offer(&set);
                 offered = Some(set);
             }
             let mut solution = estimator.step(&pair);
@@ -65,12 +72,15 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
             beat.handled(&pair.header);
             alarms.see(&solution);
             keeper.see(&solution, offered.as_ref());
+            events.see(&solution);
             if solution.is_valid() {
                 valid_ns = solution.header.stamps.solution_ns;
             }
         }
         alarms.without(monotonic_ns() - valid_ns);
         beat.health.alarms = alarms.raised();
+        events.alarms(alarms.raised());
+        supply.see(beat.health.taken > before, monotonic_ns());
         beat.tick(monotonic_ns())?;
     }
     Ok(())

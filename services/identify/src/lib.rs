@@ -5,10 +5,11 @@
 
 use crossbeam::channel::{Receiver, Sender, TrySendError, bounded};
 use estimation::Identifier;
+use frames::unit::seconds;
 use messages::{FlexureParams, Header, ImuPair, Solution, Stage, topic};
 use pipeline::configuration::Configuration;
 use pipeline::lane;
-use runtime::{Area, Context, Publisher, Sequence, Subscriber, TransportError, Waiter, monotonic_ns};
+use runtime::{Area, Context, Publisher, Sequence, Subscriber, Supply, TransportError, Waiter, monotonic_ns};
 use std::collections::VecDeque;
 use std::thread;
 use std::time::Duration;
@@ -51,9 +52,13 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
     let beat = &mut connection.beat;
     beat.ready()?;
     let mut waiter = Waiter::new();
+    let mut supply = Supply::new("solutions");
     while inputs.end.is_none() && !stop.requested() {
         waiter.wait(&[&inputs.solutions], NAP)?;
         let (taken, overflow) = inputs.join(&to_solver)?;
+        if inputs.end.is_none() {
+            supply.see(taken > 0, monotonic_ns());
+        }
         beat.health.taken += taken;
         beat.health.overflow += overflow;
         beat.health.lost = inputs.sequence.lost();
@@ -93,6 +98,15 @@ fn report(found: &Found, port: &Publisher<FlexureParams>, beat: &mut runtime::Be
     if let Some(mut set) = found.parameters {
         set.header.stamps.parameters_ns = monotonic_ns();
         port.publish(&set)?;
+        let window_s = seconds(set.header.time_ns - set.window_begin_ns);
+        let took_ms = (set.header.stamps.parameters_ns - set.header.stamps.solution_ns) as f64 * 1e-6;
+        tracing::debug!(
+            id = set.id,
+            window_s,
+            took_ms,
+            effective_s = seconds(set.effective_from_ns),
+            "a flexure model is learnt"
+        );
         beat.health.given += 1;
         beat.handled(&set.header);
     }

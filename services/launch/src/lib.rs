@@ -17,7 +17,7 @@ pub use outputs::OutputRow;
 pub use report::{AreaRow, Percentiles, Report, StageRow};
 
 use collector::Collector;
-use pipeline::configuration::{Configuration, SchedulingChoice};
+use pipeline::configuration::{Configuration, LogLevel, SchedulingChoice};
 use prometheus::Textfile;
 use runtime::scheduling::Request;
 use runtime::{Context, Domain, Node, Stop, Waiter, monotonic_ns};
@@ -43,6 +43,8 @@ pub struct Options {
     pub hlog: Option<PathBuf>,
     /// Text file of the stages' health, for the node exporter of Prometheus.
     pub prometheus: Option<PathBuf>,
+    /// `--log`, as it has to be handed on to the stages.
+    pub log: Option<LogLevel>,
 }
 
 /// The set is looked after at least so often.
@@ -64,6 +66,8 @@ pub fn run(configuration: &Configuration, options: &Options) -> Result<Report, L
     let stop = Stop::install()?;
     Domain::sweep()?;
     let run_id = monotonic_ns() as u64;
+    let (file, areas) = (configuration.path.display(), configuration.areas.len());
+    tracing::info!(configuration = %file, areas, run_id, "a run begins");
     let mut collector = Collector::new(configuration, options)?;
     let mut textfile = Textfile::create(options.prometheus.clone())?;
     let mut epoch_ns = None;
@@ -89,13 +93,27 @@ pub fn run(configuration: &Configuration, options: &Options) -> Result<Report, L
         match ended {
             Ok(()) => {
                 textfile.end()?;
-                return collector.finish(configuration, &restarts);
+                let report = collector.finish(configuration, &restarts)?;
+                ended_words(&report);
+                return Ok(report);
             }
-            Err(error) if error.is_poisoned() => continue,
+            Err(error) if error.is_poisoned() => {
+                tracing::warn!(reason = %error, "the set moves to a new domain");
+            }
             Err(error) => return Err(error),
         }
     }
     Err(LaunchError::Poisoned(DOMAINS))
+}
+
+fn ended_words(report: &Report) {
+    let pairs = report.pairs;
+    let lost: u64 = report.end_to_end.iter().map(|row| row.lost).sum();
+    let restarts: u64 = report.stages.iter().map(|row| row.restarts).sum();
+    match report.cut_short {
+        false => tracing::info!(pairs, lost, restarts, "the run has ended in order"),
+        true => tracing::warn!(pairs, lost, restarts, "the streams did not end in time: the run was cut short"),
+    }
 }
 
 /// What the configuration's choice asks of the operating system.
@@ -138,9 +156,11 @@ fn attend(
                 return Err(LaunchError::NoRealTime);
             }
             let resume = epoch_ns.is_some();
+            tracing::info!(real_time = collector.all_fifo(), resume, "all stages are ready: the source starts");
             set.start_source(*epoch_ns.get_or_insert(now_ns + RUN_UP_NS), resume)?;
         }
         if stop.requested() && until_ns.is_none() {
+            tracing::info!("asked to stop: the streams end");
             until_ns = Some(now_ns + WORK_OFF_NS);
             if !set.has_source() {
                 return Ok(());

@@ -18,12 +18,14 @@ pub struct Telegrams {
     pub unsendable: u64,
     /// Telegrams that were too old or not later than the one before.
     pub withheld: u64,
+    /// Of those that went out, those whose area has a zero in force.
+    pub zeroed: u64,
 }
 
 impl Telegrams {
     fn of(state: &OutputState) -> Self {
-        let OutputState { sent, invalid, extrapolated, unsendable, withheld, .. } = *state;
-        Self { sent, invalid, extrapolated, unsendable, withheld }
+        let OutputState { sent, invalid, extrapolated, unsendable, withheld, zeroed, .. } = *state;
+        Self { sent, invalid, extrapolated, unsendable, withheld, zeroed }
     }
 
     fn add(&mut self, other: Self) {
@@ -32,6 +34,7 @@ impl Telegrams {
         self.extrapolated += other.extrapolated;
         self.unsendable += other.unsendable;
         self.withheld += other.withheld;
+        self.zeroed += other.zeroed;
     }
 
     fn all(&self) -> u64 {
@@ -67,9 +70,13 @@ pub struct OutputRow {
 
 impl fmt::Display for OutputRow {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Telegrams { sent, invalid, extrapolated, unsendable, withheld } = self.telegrams;
+        let Telegrams { sent, invalid, extrapolated, unsendable, withheld, zeroed } = self.telegrams;
         write!(f, "output to {}, area {}: {sent} telegrams, {invalid} of them invalid", self.to, self.area)?;
-        write!(f, ", {extrapolated} carried forward; {unsendable} unsendable, {withheld} withheld")?;
+        write!(f, ", {extrapolated} carried forward")?;
+        if zeroed > 0 {
+            write!(f, ", {zeroed} told from a zero")?;
+        }
+        write!(f, "; {unsendable} unsendable, {withheld} withheld")?;
         write!(f, "; after {:.0} us (p99 {:.0}, max {:.0})", self.p50_us, self.p99_us, self.max_us)?;
         write!(f, "; UTC: {}, {:.1} s old", self.utc, self.utc_age_ms / 1e3)?;
         self.utc_error_ms.map_or(Ok(()), |ms| write!(f, " within {ms:.1} ms"))

@@ -20,6 +20,8 @@ pub struct Textfile {
     path: Option<PathBuf>,
     due_ns: i64,
     failures: u64,
+    /// Whether the last writing failed.
+    failed: bool,
 }
 
 /// A counter of all stages: its name, what it counts, and where it stands.
@@ -43,7 +45,7 @@ impl Textfile {
         if let Some(path) = &path {
             replace(path, "").map_err(LaunchError::output(path))?;
         }
-        Ok(Self { path, due_ns: 0, failures: 0 })
+        Ok(Self { path, due_ns: 0, failures: 0, failed: false })
     }
 
     /// Writes the present state, every five seconds. A disk that is full later is no reason to stop: it is counted in the next file.
@@ -56,7 +58,15 @@ impl Textfile {
         stages(&mut page, collector, set);
         areas(&mut page, collector, now_ns);
         outputs(&mut page, collector);
-        self.failures += u64::from(replace(path, &page.text).is_err());
+        let written = replace(path, &page.text);
+        let (failed, path) = (written.is_err(), path.display());
+        self.failures += u64::from(failed);
+        match written {
+            Ok(()) if self.failed => tracing::info!(%path, failures = self.failures, "the text file is written again"),
+            Err(reason) if !self.failed => tracing::warn!(%path, %reason, "the text file cannot be written"),
+            _ => {}
+        }
+        self.failed = failed;
     }
 
     /// Says that the launch has ended.
@@ -116,6 +126,7 @@ fn areas(page: &mut Page, collector: &Collector, now_ns: i64) {
     };
     of_axes("deformation_radians", "Deformation", |last| last.phi);
     of_axes("range_radians", "Half width of the 95 % range of the deformation", |last| last.range);
+    of_axes("zero_radians", "Zero from which the deformation is told", |last| last.zero);
 }
 
 fn outputs(page: &mut Page, collector: &Collector) {
@@ -126,6 +137,7 @@ fn outputs(page: &mut Page, collector: &Collector) {
     };
     all("output_sent_total", "Telegrams that went out", "counter", |row| row.telegrams.sent as f64);
     all("output_invalid_total", "Telegrams that said invalid", "counter", |row| row.telegrams.invalid as f64);
+    all("output_zeroed_total", "Telegrams told from a zero", "counter", |row| row.telegrams.zeroed as f64);
     all("output_unsendable_total", "Telegrams not taken by the line", "counter", |row| row.telegrams.unsendable as f64);
     all("output_withheld_total", "Telegrams too old or not later", "counter", |row| row.telegrams.withheld as f64);
     all("output_open", "Whether the line takes telegrams", "gauge", |row| truth(row.open));

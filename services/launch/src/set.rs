@@ -143,6 +143,9 @@ impl Set {
         for member in members.iter_mut() {
             if let Some(status) = member.exited() {
                 member.child = None;
+                if !status.success() {
+                    tracing::warn!(process = member.name, %status, "a stage has died");
+                }
                 match status.code() {
                     Some(0) => member.done = true,
                     Some(code) if code == i32::from(POISONED_EXIT_CODE) => {
@@ -155,6 +158,8 @@ impl Set {
             if member.child.is_none() && now_ns >= member.due_ns {
                 member.restarts += 1;
                 member.start(command)?;
+                let pid = member.child.as_ref().map(Child::id);
+                tracing::warn!(process = member.name, pid, restarts = member.restarts, "a stage is started again");
             }
         }
         let ended = members.iter().any(|member| member.role == *source && member.done);
@@ -198,6 +203,7 @@ impl Member {
         let child = command
             .spawn(self.role, self.restarts > 0)
             .map_err(|source| LaunchError::Start { stage: self.name.clone(), source })?;
+        tracing::debug!(process = self.name, pid = child.id(), "a stage starts");
         self.child = Some(child);
         self.started_ns = monotonic_ns();
         self.due_ns = i64::MAX;
@@ -239,6 +245,9 @@ impl Spawner {
         }
         if let Some(folder) = self.options.record.iter().find(|_| role == RECORD) {
             command.arg("--folder").arg(folder);
+        }
+        if let Some(level) = self.options.log {
+            command.args(["--log", level.name()]);
         }
         if let Some(duration_s) = self.options.duration_s {
             command.arg("--duration").arg(format!("{}ns", (duration_s * 1e9).round()));

@@ -47,7 +47,13 @@ impl Clock {
                 self.told = Some(Told { offset_ns: line.utc_offset_ns, at_ns: line.utc_at_ns });
             }
         }
+        let before = self.sources.source;
         self.sources.take(monotonic_ns(), host_utc(), self.told);
+        if self.sources.source != before {
+            let (from, to) = (before.name(), self.sources.source.name());
+            let ahead_ms = self.ahead_ns(monotonic_ns()) as f64 * 1e-6;
+            tracing::info!(from, to, ahead_ms, "UTC comes from another clock");
+        }
         Ok(())
     }
 

@@ -4,7 +4,7 @@ use crate::line::Line;
 use frames::unit::nanoseconds;
 use messages::{Header, OutputState, Solution};
 use pipeline::configuration::{Configuration, Output, Telegrams};
-use runtime::{Latency, monotonic_ns};
+use runtime::{Latency, Throttle, monotonic_ns};
 use telegrams::{Cadence, Report, Track, encode_kmb, instant_ns};
 
 /// The least difference that shows in a sentence.
@@ -22,10 +22,22 @@ pub struct Destination {
     state: OutputState,
     delays: Latency,
     text: String,
+    /// Of the last solution: what is told of silence has none of its own.
+    zero: Option<[f64; 3]>,
     last_utc_ns: i64,
     /// When the next word about silence is due, on the monotonic clock.
     due_ns: i64,
+    logged: Logged,
 }
+
+/// Whether it takes telegrams, as the log has it.
+struct Logged {
+    open: bool,
+    throttle: Throttle,
+}
+
+/// A line that comes and goes is told so often, ns.
+const PAUSE_NS: i64 = 10_000_000_000;
 
 impl Destination {
     /// Opens a destination of the configuration. With `resume` a line that cannot be opened now is opened later.
@@ -54,9 +66,11 @@ impl Destination {
                 ..OutputState::default()
             },
             delays: Latency::new(),
-            text: String::with_capacity(output.longest()),
+            text: String::with_capacity(output.longest(true)),
+            zero: None,
             last_utc_ns: i64::MIN,
             due_ns: monotonic_ns() + nanoseconds(output.silence_s),
+            logged: Logged { open: true, throttle: Throttle::new(PAUSE_NS) },
             output,
         })
     }
@@ -80,6 +94,7 @@ impl Destination {
             return;
         }
         let moment = track.moment(solution, self.lead_ns);
+        self.zero = moment.zero;
         if self.send(&moment.report(clock.utc_ns(moment.instant_ns))) {
             self.state.extrapolated += u64::from(moment.extrapolated);
             self.state.header.sequence = solution.header.sequence;
@@ -95,15 +110,28 @@ impl Destination {
         if now_ns - newest_ns <= self.silence_ns {
             self.due_ns = newest_ns + self.silence_ns;
         } else if now_ns >= self.due_ns {
-            self.send(&invalid(now_ns, clock));
+            self.send(&self.invalid(now_ns, clock));
             // after a pause of the process there is nothing to catch up with
             self.due_ns = (self.due_ns + self.period_ns).max(now_ns);
         }
     }
 
+    /// Tells when the line has been lost or has come back.
+    pub fn log(&mut self, now_ns: i64) {
+        let open = self.line.is_open();
+        if open != self.logged.open && self.logged.throttle.pass(now_ns) {
+            self.logged.open = open;
+            let (to, area, unsendable) = (&self.output.to, &self.output.area, self.state.unsendable);
+            match open {
+                true => tracing::info!(%to, of_area = area, unsendable, "a line takes telegrams again"),
+                false => tracing::warn!(%to, of_area = area, unsendable, "a line does not take telegrams"),
+            }
+        }
+    }
+
     /// The last word, later than even an attitude that was carried forward.
     pub fn end(&mut self, now_ns: i64, clock: &Clock) {
-        let mut report = invalid(now_ns, clock);
+        let mut report = self.invalid(now_ns, clock);
         report.utc_ns = report.utc_ns.max(self.last_utc_ns.saturating_add(MILLISECOND_NS));
         self.send(&report);
         self.line.attend(now_ns);
@@ -133,10 +161,15 @@ impl Destination {
         if sent {
             self.state.sent += 1;
             self.state.invalid += u64::from(report.attitude.is_none());
+            self.state.zeroed += u64::from(report.zero.is_some());
         } else {
             self.state.unsendable += 1;
         }
         sent
+    }
+
+    fn invalid(&self, now_ns: i64, clock: &Clock) -> Report {
+        Report { utc_ns: clock.utc_ns(now_ns), zero: self.zero, ..Report::default() }
     }
 
     /// The state to be published.
@@ -156,8 +189,4 @@ impl Destination {
             ..self.state
         }
     }
-}
-
-fn invalid(now_ns: i64, clock: &Clock) -> Report {
-    Report { utc_ns: clock.utc_ns(now_ns), ..Report::default() }
 }

@@ -46,6 +46,7 @@ impl Destinations {
         for (destination, _) in &mut self.all {
             let newest_ns = areas.iter().find(|area| area.index() == destination.area()).map(AreaInput::newest_ns);
             destination.attend(newest_ns.unwrap_or(now_ns), now_ns, &self.clock);
+            destination.log(now_ns);
         }
         if now_ns - self.told_ns >= SECOND_NS {
             self.publish(now_ns)?;

@@ -1,8 +1,8 @@
 //! The thread that has the disk: chunks, files, and what to do when it is full.
 
+use crate::Item;
 use crate::names::Names;
 use crate::tally::Tally;
-use crate::{Item, Say};
 use crossbeam::channel::{Receiver, RecvTimeoutError};
 use pipeline::configuration::RecordSettings;
 use recording::{About, Ending, FormatError, Record, Writer};
@@ -35,7 +35,6 @@ pub struct Disk {
     plan: Plan,
     names: Names,
     tally: Arc<Tally>,
-    say: Say,
     state: State,
     /// Whether it has been said that nothing can be written.
     said: bool,
@@ -98,10 +97,10 @@ fn mcap_error(error: std::io::Error) -> FormatError {
 
 impl Disk {
     /// Makes the first file. One that cannot be made is tried again later, like any other.
-    pub fn open(plan: Plan, tally: Arc<Tally>, say: Say) -> Self {
+    pub fn open(plan: Plan, tally: Arc<Tally>) -> Self {
         let names = Names::new(&plan.settings.folder, plan.about.run_id, plan.launched);
         let (state, flushed) = (State::Refused(Instant::now()), Instant::now());
-        let mut disk = Self { plan, names, tally, say, state, said: false, flushed };
+        let mut disk = Self { plan, names, tally, state, said: false, flushed };
         disk.plan.about.from_the_start &= disk.names.next() == 0;
         disk.begin();
         disk
@@ -158,7 +157,7 @@ impl Disk {
         self.flushed = Instant::now();
         if std::mem::take(&mut self.said) {
             let (path, dropped) = (part.path.display(), self.tally.dropped());
-            (self.say)(&format!("recording goes on in {path}; {dropped} messages are in no file"));
+            tracing::info!(%path, dropped, "recording goes on in another file; what was dropped is in none");
         }
         if part.sound as f64 >= self.plan.settings.rotate {
             self.close(false);
@@ -173,6 +172,7 @@ impl Disk {
         let begun = self.names.make_folder().map_err(mcap_error).and_then(|()| Part::create(path.clone(), &about));
         match begun {
             Ok(part) => {
+                tracing::info!(path = %path.display(), part = about.part, "a file of the recording begins");
                 self.state = State::Open(Box::new(part));
                 self.names.advance();
                 self.plan.about.from_the_start = false;
@@ -188,9 +188,7 @@ impl Disk {
         self.state = State::Refused(Instant::now() + RETRY);
         if !std::mem::replace(&mut self.said, true) {
             let path = path.display();
-            (self.say)(&format!(
-                "cannot write {path}: {error}; messages are dropped and counted until that has passed"
-            ));
+            tracing::error!(%path, reason = %error, "cannot write: messages are dropped and counted until that has passed");
         }
     }
 
@@ -216,7 +214,7 @@ impl Disk {
                 self.tally.refuse(messages);
                 // it fails only where the file is cut within a chunk, which readers survive
                 let _ = file.set_len(sound);
-                (self.say)(&format!("cannot complete {}: {error}; `deckflex recover` can", path.display()));
+                tracing::error!(path = %path.display(), reason = %error, "cannot complete the file; `deckflex recover` can");
             }
         }
     }
@@ -233,9 +231,11 @@ impl Disk {
             }
             match fs::remove_file(&path) {
                 Ok(()) => {
-                    (self.say)(&format!("removed {}, the run's oldest file, to keep record.budget_mb", path.display()))
+                    tracing::info!(path = %path.display(), "removed the run's oldest file to keep record.budget_mb")
                 }
-                Err(error) => (self.say)(&format!("cannot remove {}: {error}", path.display())),
+                Err(error) => {
+                    tracing::warn!(path = %path.display(), reason = %error, "cannot remove the run's oldest file")
+                }
             }
             total -= size;
         }

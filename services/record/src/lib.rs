@@ -20,9 +20,6 @@ use std::thread;
 use std::time::{Duration, SystemTime};
 use tally::Tally;
 
-/// Where a recorder says what a watch should know: one line at a time.
-pub type Say = fn(&str);
-
 /// How long the recorder leaves the ports alone; they hold 20 s.
 const NAP: Duration = Duration::from_millis(20);
 /// Messages that may wait for the disk: 20 s of one area at 100 Hz.
@@ -59,7 +56,7 @@ enum Item {
 /// # Errors
 /// The transport or the operating system refuses, or nothing says where to record. A disk that cannot be written is no error: what
 /// could not be recorded is counted and said.
-pub fn run(configuration: &Configuration, context: &Context, say: Say) -> Result<(), RecordError> {
+pub fn run(configuration: &Configuration, context: &Context) -> Result<(), RecordError> {
     let settings = configuration.record.clone().ok_or(RecordError::Nowhere)?;
     let about = About {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -78,7 +75,7 @@ pub fn run(configuration: &Configuration, context: &Context, say: Say) -> Result
     let since_launch_ns = monotonic_ns().saturating_sub_unsigned(context.run_id).max(0);
     let launched = SystemTime::now() - Duration::from_nanos(since_launch_ns.unsigned_abs());
     let plan = Plan { settings, about, launched, topics: inputs.topics().to_vec() };
-    let mut disk = Disk::open(plan, Arc::clone(&tally), say);
+    let mut disk = Disk::open(plan, Arc::clone(&tally));
     let disk = thread::spawn(move || {
         disk.work(&items);
         disk

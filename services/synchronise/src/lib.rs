@@ -4,7 +4,7 @@ use estimation::synchronise::Synchroniser;
 use messages::{Header, ImuPair, ImuSample, MainAttitude, Stage, topic};
 use pipeline::configuration::Configuration;
 use pipeline::lane;
-use runtime::{Area, Context, Publisher, Sequence, Subscriber, TransportError, Waiter, monotonic_ns};
+use runtime::{Area, Context, Publisher, Sequence, Subscriber, Supply, TransportError, Waiter, monotonic_ns};
 use std::time::Duration;
 
 /// How long a sleep may last without data.
@@ -19,6 +19,8 @@ struct Inputs {
     sub: Subscriber<ImuSample>,
     main_sequence: Sequence,
     sub_sequence: Sequence,
+    main_supply: Supply,
+    sub_supply: Supply,
     main_end: Option<(Header, i64)>,
     sub_end: bool,
 }
@@ -29,7 +31,7 @@ impl Inputs {
     /// The order matters: a main sample's attitude was published before it, so it is there once the sample is; and whatever the sub
     /// unit had given by then is there too, so that a late wake-up does not look like silence.
     fn drain(&mut self, synchroniser: &mut Synchroniser) -> Result<u64, TransportError> {
-        let mut taken = 0;
+        let (mut taken, mut taken_of_sub) = (0, 0);
         while let Some(sample) = self.main.take()? {
             while let Some(attitude) = self.attitude.take()? {
                 synchroniser.attitude(&attitude);
@@ -49,6 +51,14 @@ impl Inputs {
             }
             self.sub_sequence.see(&Header { sequence: sample.ordinal, ..sample.header });
             synchroniser.sub(&sample);
+            taken_of_sub += 1;
+        }
+        let now_ns = monotonic_ns();
+        if self.main_end.is_none() {
+            self.main_supply.see(taken > 0, now_ns);
+        }
+        if !self.sub_end {
+            self.sub_supply.see(taken_of_sub > 0, now_ns);
         }
         Ok(taken)
     }
@@ -75,6 +85,8 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
         sub: Subscriber::open(node, &topic::area_imu(name))?,
         main_sequence: Sequence::default(),
         sub_sequence: Sequence::default(),
+        main_supply: Supply::new("samples of the main unit"),
+        sub_supply: Supply::new("samples of the area's unit"),
         main_end: None,
         sub_end: false,
     };

@@ -11,6 +11,7 @@ mod flexure;
 mod identifier;
 mod instrument;
 mod line;
+mod log;
 mod model_free;
 mod output;
 mod quantity;
@@ -31,6 +32,7 @@ pub use estimator::{EstimatorSettings, FilterMethod, MatchingMethod, RangeMethod
 pub use identifier::{IdentifierMethod, IdentifierSettings};
 pub use instrument::{Accel, Gyro, Source};
 pub use line::Line;
+pub use log::{LogLevel, LogSettings, LogTo};
 pub use model_free::{DelaySettings, NetworkInput, NetworkSettings};
 pub use output::{Destination, Output, Telegrams};
 pub use record::{RecordSettings, RecordTopic};
@@ -82,6 +84,9 @@ pub struct Configuration {
     /// What is recorded of the run; `None` for nothing.
     #[serde(default, deserialize_with = "table::optional")]
     pub record: Option<RecordSettings>,
+    /// What is logged, and where.
+    #[serde(default, deserialize_with = "table::one")]
+    pub log: LogSettings,
     /// What the simulator makes of the ship.
     #[serde(default, deserialize_with = "table::one")]
     pub simulation: Simulation,

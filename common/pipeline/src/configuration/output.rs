@@ -2,6 +2,7 @@
 
 use super::document::Document;
 use super::{Configuration, ConfigurationError, quantity, table};
+use frames::Vec3;
 use serde::Deserialize;
 use serde::de::{Deserializer, Error};
 use std::fmt;
@@ -44,10 +45,12 @@ impl Output {
         Style { talker: self.talker, decimals: self.decimals }
     }
 
-    /// The most bytes that go out at one instant.
-    pub fn longest(&self) -> usize {
+    /// The most bytes that go out at one instant, where the area has a zero or not.
+    pub fn longest(&self, zeroed: bool) -> usize {
         match &self.telegrams {
-            Telegrams::Sentences(sentences) => sentences.iter().map(|sentence| sentence.longest(self.decimals)).sum(),
+            Telegrams::Sentences(sentences) => {
+                sentences.iter().map(|sentence| sentence.longest(self.decimals, zeroed)).sum()
+            }
             Telegrams::Kmb => KMB_LENGTH,
         }
     }
@@ -236,11 +239,12 @@ pub(super) fn rules(configuration: &Configuration, document: &Document, faults: 
             }
             Destination::Udp { .. } => {}
             Destination::Serial { device, baud } => {
-                let needed = output.longest() as f64 * BITS * output.rate_hz;
+                let area = configuration.areas.iter().find(|area| area.name == output.area);
+                let longest = output.longest(area.is_some_and(|area| area.zero != Vec3::ZERO));
+                let needed = longest as f64 * BITS * output.rate_hz;
                 if needed > f64::from(*baud) {
                     let message = format!(
-                        "{} bytes, {} times a second, need up to {needed:.0} baud: fewer sentences, a lower rate_hz or a faster line",
-                        output.longest(),
+                        "{longest} bytes, {} times a second, need up to {needed:.0} baud: fewer sentences, a lower rate_hz or a faster line",
                         output.rate_hz
                     );
                     fault("to.baud", &message);
