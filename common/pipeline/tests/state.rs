@@ -10,6 +10,7 @@ use pipeline::source::{Batch, Source};
 use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 fn shipped(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../config").join(name)
@@ -22,6 +23,8 @@ type Step = (Option<FlexureParams>, ImuPair, Solution);
 struct Run {
     steps: Vec<Step>,
     states: Vec<(usize, Vec<u8>)>,
+    /// How long the copying of each took.
+    copied: Vec<Duration>,
 }
 
 fn run(configuration: &Configuration, every: usize) -> Run {
@@ -30,7 +33,7 @@ fn run(configuration: &Configuration, every: usize) -> Run {
     let mut estimator = lane::estimator(configuration, 0);
     let mut identifier = lane::identifier(configuration, 0);
     let (mut batch, mut set) = (Batch::default(), None);
-    let mut run = Run { steps: Vec::new(), states: Vec::new() };
+    let mut run = Run { steps: Vec::new(), states: Vec::new(), copied: Vec::new() };
     while source.next(&mut batch) {
         batch.attitude.iter().for_each(|attitude| synchroniser.attitude(attitude));
         synchroniser.main(&batch.main);
@@ -40,9 +43,12 @@ fn run(configuration: &Configuration, every: usize) -> Run {
             let solution = estimator.step(&pair);
             run.steps.push((set.take(), pair, solution));
             set = identifier.step(&pair, &solution);
-            if run.steps.len().is_multiple_of(every)
-                && let Some(frozen) = estimator.freeze()
-            {
+            if !run.steps.len().is_multiple_of(every) {
+                continue;
+            }
+            let begin = Instant::now();
+            if let Some(frozen) = estimator.freeze() {
+                run.copied.push(begin.elapsed());
                 run.states.push((run.steps.len(), frozen()));
             }
         }
@@ -77,7 +83,7 @@ fn every_method_goes_on_from_its_state_to_the_bit() {
         }
         let name = format!("{} {:?}", path.display(), told.matching);
         configuration.run.duration_s = Some(7000.0 / configuration.rate_hz);
-        let Run { steps, states } = run(&configuration, 3001);
+        let Run { steps, states, .. } = run(&configuration, 3001);
         assert!(states.len() >= 2, "{name}: {} states in {} steps", states.len(), steps.len());
         for (from, state) in &states {
             let mut again = lane::estimator(&configuration, 0);
@@ -100,11 +106,14 @@ fn the_own_estimator_goes_on_from_its_state_to_the_bit() {
     let told = &configuration.areas[0].estimator;
     assert_eq!((told.matching, told.range()), (MatchingMethod::Deck, RangeMethod::Observed));
     // not at the end of an increment, nor always at the same place within one
-    let Run { steps, states } = run(&configuration, 2503);
+    let Run { steps, states, mut copied } = run(&configuration, 2503);
     let (first, last) = (states.first().unwrap(), states.last().unwrap());
     assert!(first.0 < 6000 && last.0 > 95_000 && states.len() > 35, "{} states", states.len());
+    copied.sort();
+    eprintln!("a copy took {:?}, the longest {:?}", copied[copied.len() / 2], copied[copied.len() - 1]);
     let largest = states.iter().map(|(_, state)| state.len()).max().unwrap();
     assert!(largest < 3_000_000 && last.1.len() < 200_000, "{largest} and {} bytes", last.1.len());
+    eprintln!("{largest} bytes at most, {} in the end", last.1.len());
     for (from, state) in &states {
         let mut again = lane::estimator(&configuration, 0);
         again.thaw(state).unwrap();
@@ -117,7 +126,7 @@ fn the_own_estimator_goes_on_from_its_state_to_the_bit() {
 fn what_is_no_state_of_this_estimator_is_refused_and_changes_nothing() {
     let configuration =
         Configuration::read(&shipped("demo.toml")).unwrap().with(|told| told.run.duration_s = Some(60.0));
-    let Run { steps, states } = run(&configuration, 5000);
+    let Run { steps, states, .. } = run(&configuration, 5000);
     let state = &states[0].1;
     let mut estimator = lane::estimator(&configuration, 0);
     assert!(estimator.freeze().is_none(), "there is no filter yet");

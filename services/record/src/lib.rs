@@ -7,6 +7,7 @@ mod disk;
 mod inputs;
 mod names;
 mod tally;
+mod wishes;
 
 use crossbeam::channel::{Sender, TrySendError, bounded};
 use disk::{Disk, Plan};
@@ -19,6 +20,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, SystemTime};
 use tally::Tally;
+use wishes::Wishes;
 
 /// Where a recorder says what a watch should know: one line at a time.
 pub type Say = fn(&str);
@@ -72,6 +74,7 @@ pub fn run(configuration: &Configuration, context: &Context, say: Say) -> Result
     let (stop, mut connection) = context.connect(Stage::Record, None)?;
     runtime::fail_beyond_file_limit()?;
     let mut inputs = Inputs::open(&connection.node, configuration, &settings.topics)?;
+    let mut wishes = Wishes::open(&connection.node, configuration, &settings.topics)?;
     let tally = Arc::new(Tally::default());
     let (to_disk, items) = bounded(BACKLOG);
     // the number of a run is the instant of its launch
@@ -89,6 +92,7 @@ pub fn run(configuration: &Configuration, context: &Context, say: Say) -> Result
     let mut ended_ns = None;
     loop {
         inputs.drain(&mut outlet)?;
+        wishes.tell(tally.files())?;
         let now_ns = monotonic_ns();
         if inputs.ended() {
             ended_ns.get_or_insert(now_ns);
