@@ -21,7 +21,7 @@ pub enum Command {
     Launch(LaunchArgs),
     /// Run the same steps in one thread without transport, as fast as it goes
     Process {
-        /// Or a recorded run, to go through it again as it was
+        /// Or a recorded run, to go through it again as it was: its first file, or its folder
         configuration: PathBuf,
         /// Length of the data, such as 60s or 10min
         #[arg(long, value_parser = humantime::parse_duration)]

@@ -10,6 +10,7 @@ use arguments::{
 use clap::Parser;
 use exit::Refusal;
 use pipeline::configuration::Configuration;
+use pipeline::recorded_run::first_file;
 use runtime::{Context, TransportError};
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -90,6 +91,7 @@ fn launch(args: LaunchArgs) -> Outcome {
 }
 
 fn process(path: PathBuf, duration: Option<Duration>, out: &Path) -> Outcome {
+    let path = first_file(&path)?;
     let configuration = read(&path, duration)?;
     if let (None, pipeline::configuration::Source::Simulator) =
         (configuration.run.duration_s, &configuration.main.source)
@@ -109,7 +111,7 @@ fn check_recordings(path: &Path) -> Result<(), check::CheckError> {
 }
 
 fn check(path: PathBuf) -> Outcome {
-    let report = check::run(&path)?;
+    let report = check::run(&first_file(&path)?)?;
     println!("{report}");
     check::listen(&report.configuration).for_each(|listened| println!("{listened}"));
     Ok(ExitCode::SUCCESS)
@@ -131,12 +133,12 @@ fn recover(recording: &Path, out: Option<&Path>) -> Outcome {
 }
 
 fn export(recording: &Path, out: &Path) -> Outcome {
-    print!("{}", export::run(recording, out)?);
+    print!("{}", export::run(&first_file(recording)?, out)?);
     Ok(ExitCode::SUCCESS)
 }
 
 fn report(recording: &Path, out: Option<&Path>) -> Outcome {
-    print!("{}", report::run(recording, out)?);
+    print!("{}", report::run(&first_file(recording)?, out)?);
     Ok(ExitCode::SUCCESS)
 }
 

@@ -4,9 +4,10 @@
 //! `x'' + 2 mu x' + b^2 x = w`, density of w `Q = 4 mu b^2 sigma^2`, for any damping (`mu < b` oscillates, `mu = b` is critical).
 
 use nalgebra::{Matrix2, SMatrix, Vector2};
+use serde::{Deserialize, Serialize};
 
 /// The model of one axis.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flexure {
     /// Damping, 1/s.
     pub mu: f64,
@@ -126,7 +127,7 @@ impl Flexure {
 }
 
 /// The flexure of a hull about the axes of m: a mode each, and beside it a second where the hull has one. The flexure is their sum.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hull {
     /// The mode about each axis, the slower one where there are two.
     pub modes: [Flexure; 3],

@@ -11,7 +11,10 @@ pub mod filter;
 pub mod flexure;
 pub mod identify;
 pub mod matching;
+mod state;
 pub mod synchronise;
+
+pub use state::{Frozen, StateError};
 
 use messages::{FlexureParams, ImuPair, Solution};
 
@@ -24,6 +27,13 @@ pub trait Estimator {
     /// Goes on from a solution that another estimator of the same run gave last, instead of registering; for before the first pair. One that cannot
     /// registers all the same.
     fn resume(&mut self, _last: &Solution) {}
+    /// Copies everything that the solutions to come depend on, but for pairs and parameter sets to come; `None` while there is no filter yet.
+    fn freeze(&self) -> Option<Frozen>;
+    /// Goes on from the bytes of a state, to the bit as the estimator that it is of.
+    ///
+    /// # Errors
+    /// The state is of another version or other settings, or cannot be read; then the estimator is as it was.
+    fn thaw(&mut self, state: &[u8]) -> Result<(), StateError>;
 }
 
 /// The slow stage: now and then a parameter set.

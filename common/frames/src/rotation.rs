@@ -1,10 +1,11 @@
 use crate::{Frame, Vec3};
 use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
 use std::marker::PhantomData;
 use std::ops::Mul;
 
 /// The rotation "A from B", `C_B^A`: turns a vector seen in `B` into the same vector seen in `A`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Rot<A: Frame, B: Frame> {
     pub(crate) q: DQuat,
     frames: PhantomData<(A, B)>,

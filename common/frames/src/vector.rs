@@ -1,10 +1,11 @@
 use crate::Frame;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 use std::marker::PhantomData;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// A vector seen in the frame `F`. The unit of measure is the name's business.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Vec3<F: Frame> {
     pub(crate) v: DVec3,
     frame: PhantomData<F>,

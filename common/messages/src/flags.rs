@@ -1,7 +1,9 @@
+use serde::{Deserialize, Serialize};
+
 bitflags::bitflags! {
     /// What a sample, a pair or a solution has to say about itself. The names are those of the solution files.
     #[repr(transparent)]
-    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
     pub struct Flags: u32 {
         /// The sub unit's attitude was interpolated onto the main unit's instant.
         const INTERPOLATED = 1 << 0;

@@ -1,6 +1,8 @@
+use serde::{Deserialize, Serialize};
+
 /// What every message begins with.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Header {
     /// Which run the message belongs to; kept by a stage that is restarted.
     pub run_id: u64,
@@ -25,7 +27,7 @@ impl Header {
 
 /// Instants of the host's monotonic clock in nanoseconds; 0 where the message has not been.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Stamps {
     /// When the main unit's sample was due.
     pub due_ns: i64,

@@ -15,6 +15,7 @@ mod output;
 mod pair;
 mod parameters;
 mod solution;
+mod state;
 pub mod topic;
 mod truth;
 
@@ -29,6 +30,7 @@ pub use output::{OutputState, UtcSource};
 pub use pair::ImuPair;
 pub use parameters::FlexureParams;
 pub use solution::Solution;
+pub use state::{STATE_PART, StatePart, StateWish};
 pub use truth::Truth;
 
 /// A type that travels between processes: plain data of fixed layout, every bit pattern of which is a value.

@@ -46,10 +46,14 @@ pub struct LineHealth {
     pub utc_offset_ns: i64,
     /// The time of that sample, ns of the host's monotonic clock.
     pub utc_at_ns: i64,
+    /// Samples whose time is the device's own.
+    pub by_device: u64,
+    /// Samples whose time by the device was too far off that by the clock filter, which was taken.
+    pub disagreeing: u64,
     /// 0 for the main unit, otherwise 1 + the index of the area.
     pub unit: u32,
     /// 1 while the clock filter's times are of use.
     pub settled: u32,
 }
 
-message!(LineHealth, "deckflex/LineHealth/2");
+message!(LineHealth, "deckflex/LineHealth/3");

@@ -1,9 +1,10 @@
 use crate::{Header, message};
+use serde::{Deserialize, Serialize};
 
 /// The flexure model of an area, per axis of m: `x'' + 2 mu x' + b^2 x = 2 b sigma sqrt(mu) w`, w white of unit density; where the hull has a second mode about an
 /// axis, the flexure is the sum of two such.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FlexureParams {
     /// `sequence` is the main sample number at the end of the window, `time_ns` its time.
     pub header: Header,

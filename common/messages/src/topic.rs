@@ -9,6 +9,8 @@
 //! | `area/<name>/pair` | [`ImuPair`] | synchronise | 2048 | 0 |
 //! | `area/<name>/solution` | [`Solution`] | estimate | 2048 | 0 |
 //! | `area/<name>/parameters` | [`FlexureParams`] | identify | 16 | 1 |
+//! | `area/<name>/state` | [`StatePart`] | estimate | 512 | 0 |
+//! | `area/<name>/state_wish` | [`StateWish`] | record | 16 | 1 |
 //! | `line/main`, `line/area/<name>` | [`LineHealth`] | acquire | 16 | 1 |
 //! | `output/<number>` | [`OutputState`] | output | 16 | 1 |
 //! | `health/<stage>[/<name>]` | [`Health`] | each stage | 16 | 1 |
@@ -17,7 +19,8 @@
 //! reader that comes later still gets: 1 makes the topic latched.
 
 use crate::{
-    FlexureParams, Health, ImuPair, ImuSample, LineHealth, MainAttitude, Message, OutputState, Solution, Stage, Truth,
+    FlexureParams, Health, ImuPair, ImuSample, LineHealth, MainAttitude, Message, OutputState, Solution, Stage,
+    StatePart, StateWish, Truth,
 };
 use std::marker::PhantomData;
 
@@ -34,6 +37,7 @@ pub struct Topic<M: Message> {
 }
 
 const STREAM: (usize, usize) = (2048, 0);
+const PARTS: (usize, usize) = (512, 0);
 const LATCHED: (usize, usize) = (16, 1);
 
 fn topic<M: Message>(name: String, (depth, history): (usize, usize)) -> Topic<M> {
@@ -73,6 +77,16 @@ pub fn solution(area: &str) -> Topic<Solution> {
 /// The flexure parameters of an area.
 pub fn parameters(area: &str) -> Topic<FlexureParams> {
     topic(format!("area/{area}/parameters"), LATCHED)
+}
+
+/// The states of an area's estimator, in parts.
+pub fn state(area: &str) -> Topic<StatePart> {
+    topic(format!("area/{area}/state"), PARTS)
+}
+
+/// The wish for them.
+pub fn state_wish(area: &str) -> Topic<StateWish> {
+    topic(format!("area/{area}/state_wish"), LATCHED)
 }
 
 /// The wire of a unit; `area` is `None` for the main unit.

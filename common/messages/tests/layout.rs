@@ -26,9 +26,11 @@ fn layouts_are_as_published() {
         dynamic @ 216, rate @ 240, drift @ 264, scale @ 288, covariance @ 336, static_covariance @ 408, dynamic_covariance @ 480,
         registered @ 552, registered_sigma @ 584, delay @ 608, skew_sigma @ 632, range @ 640, deck @ 664, deck_sigma @ 696, nis @ 720,
         zero @ 728, area @ 752, valid @ 756, flags @ 760);
+    layout!(StatePart, "deckflex/StatePart/1", 768, length @ 80, offset @ 88, area @ 96, bytes @ 104);
+    layout!(StateWish, "deckflex/StateWish/1", 80, header @ 0);
     layout!(Truth, "deckflex/Truth/1", 208, q @ 80, static_q @ 112, dynamic @ 144, ship @ 168, area @ 200);
-    layout!(LineHealth, "deckflex/LineHealth/2", 248, arrival_ns @ 80, device_ns @ 88, skew @ 96, sigma @ 112, good @ 120,
-        overflow @ 200, opened @ 216, utc_offset_ns @ 224, utc_at_ns @ 232, unit @ 240, settled @ 244);
+    layout!(LineHealth, "deckflex/LineHealth/3", 264, arrival_ns @ 80, device_ns @ 88, skew @ 96, sigma @ 112, good @ 120,
+        overflow @ 200, opened @ 216, utc_offset_ns @ 224, utc_at_ns @ 232, by_device @ 240, unit @ 256, settled @ 260);
     layout!(Health, "deckflex/Health/2", 176, taken @ 80, late @ 136, stage @ 152, pid @ 168, alarms @ 172);
     layout!(OutputState, "deckflex/OutputState/2", 200, sent @ 80, zeroed @ 120, utc_offset_ns @ 128, delay_p50_ns @ 160, utc_source @ 184, open @ 196);
 }

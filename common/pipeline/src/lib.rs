@@ -7,6 +7,7 @@ pub mod lane;
 pub mod offline;
 pub mod recorded_run;
 pub mod recording;
+pub mod resumed;
 pub mod solution_file;
 pub mod source;
 pub mod summary;

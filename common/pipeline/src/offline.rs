@@ -70,7 +70,7 @@ impl Lane {
 /// What became of the samples of a run.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Outcome {
-    /// By area; a sample of the main unit counts in each.
+    /// By area; a sample of the main unit counts in each. Empty where no samples were looked at.
     pub areas: Vec<Counts>,
     /// Rows of the recordings that could not be read.
     pub unreadable_rows: u64,

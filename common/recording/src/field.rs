@@ -79,6 +79,27 @@ impl<const N: usize> Field for [f64; N] {
     }
 }
 
+impl<const N: usize> Field for [u8; N] {
+    const TYPE: Type = Type::Bytes;
+
+    fn write(&self, number: u32, out: &mut Vec<u8>) {
+        encoding::encode_key(number, WireType::LengthDelimited, out);
+        encoding::encode_varint(N as u64, out);
+        out.put_slice(self);
+    }
+
+    fn read(&mut self, wire: WireType, input: &mut &[u8]) -> Result<(), DecodeError> {
+        encoding::wire_type::check_wire_type(WireType::LengthDelimited, wire)?;
+        let body = delimited(input)?;
+        *self = body.try_into().map_err(|_| error(format!("{} bytes for {N}", body.len())))?;
+        Ok(())
+    }
+
+    fn values(&self, out: &mut Vec<String>) {
+        out.push(self.iter().map(|byte| format!("{byte:02x}")).collect());
+    }
+}
+
 macro_rules! flags {
     ($($type:ty),*) => {$(
         impl Field for $type {

@@ -2,7 +2,7 @@
 
 use crate::Adoption;
 use crate::structure::{PACKAGE, Structure, merge_all, schema, structure};
-use messages::{FlexureParams, Header, Health, ImuPair, ImuSample, MainAttitude, Solution, Stamps, Truth};
+use messages::{FlexureParams, Header, Health, ImuPair, ImuSample, MainAttitude, Solution, Stamps, StatePart, Truth};
 use prost::DecodeError;
 
 // Of a header `end` is left out, since the marks that end a stream are not recorded, and the fields without meaning are too.
@@ -25,6 +25,7 @@ structure!(Solution {
     20 skew_sigma, 21 range, 22 deck, 23 deck_sigma, 24 area, 25 valid, 26 flags,
     27 nis, 28 zero
 } left out { reserved });
+structure!(StatePart { 1 header, 2 length, 3 offset, 4 area, 5 bytes } left out { reserved });
 structure!(Truth { 1 header, 2 q, 3 static_q, 4 dynamic, 5 ship, 6 area } left out { reserved });
 structure!(Health {
     1 header, 2 taken, 3 given, 4 lost, 5 missing, 6 refused, 7 suspect, 8 overflow, 9 late, 10 restarted_windows, 11 stage,
@@ -113,6 +114,8 @@ records! {
     Adoption(Adoption),
     /// A solution.
     Solution(Solution),
+    /// A part of an estimator's state.
+    State(StatePart),
     /// The truth of a simulation.
     Truth(Truth),
     /// How a stage does.
@@ -126,7 +129,7 @@ impl Record {
         let ns = match self {
             Self::Sample(_) | Self::Attitude(_) | Self::Truth(_) => stamps.source_ns,
             Self::Pair(_) => stamps.pair_ns,
-            Self::Solution(_) | Self::Adoption(_) => stamps.solution_ns,
+            Self::Solution(_) | Self::Adoption(_) | Self::State(_) => stamps.solution_ns,
             Self::Parameters(_) => stamps.parameters_ns,
             Self::Health(_) => 0,
         };

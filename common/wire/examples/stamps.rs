@@ -6,7 +6,7 @@
 #![allow(clippy::print_stdout)]
 
 use std::error::Error;
-use wire::{Angle, Device, Rotation, Settings, Unit};
+use wire::{Angle, Device, Rotation, Settings, TimeSource, Unit};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -24,7 +24,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let truths: Vec<i64> = truths.collect();
     let interval_ns = (1e9 / rate.parse::<f64>()?).round() as i64;
     let latency_ns = (1e3 * latency.parse::<f64>()?) as i64;
-    let mut unit = Unit::new(Settings { device, interval_ns, latency_ns, unit: 0, run_id: 0, epoch_ns: 0 });
+    let time_source = TimeSource::Fitted;
+    let (decimation, unit, run_id, epoch_ns) = (1, 0, 0, 0);
+    let settings = Settings { device, interval_ns, decimation, latency_ns, time_source, unit, run_id, epoch_ns };
+    let mut unit = Unit::new(settings);
     let mut minutes: Vec<Vec<f64>> = Vec::new();
     let mut begin_ns = None;
     for (arrival_ns, bytes) in wire::raw::pieces(&contents).ok_or("no file of raw bytes")? {

@@ -14,6 +14,8 @@ const FINEST: f64 = 2e-6;
 const GATE: f64 = 4.0;
 /// An arrival before the line by more than this cannot be noise, s.
 const EARLY: f64 = 3e-4;
+/// Before the first block is whole: a fast device of many samples a second comes earlier by its skew alone, s.
+const FIRST_EARLY: f64 = 2.0 * SKEW_SIGMA * BLOCK_S;
 /// When every block has come late for so long the way itself has become longer, s.
 const LONGER_WAY_S: f64 = 5.0;
 /// The device's time is trusted after so long, s.
@@ -128,7 +130,7 @@ impl State {
         self.note_jitter(residual, now_s);
         self.last_s = now_s;
         // what the line was drawn through so far had been late
-        let early = if self.blocks == 0 { 0.0 } else { EARLY + 5.0 * self.line.variance[0].max(0.0).sqrt() };
+        let early = if self.blocks == 0 { FIRST_EARLY } else { EARLY + 5.0 * self.line.variance[0].max(0.0).sqrt() };
         if residual < -early {
             self.line.advance(now_s);
             self.line.offset += residual;

@@ -34,4 +34,4 @@ pub use detector::Detector;
 pub use device::{Angle, Device, Family, Rotation};
 pub use framer::{Counts, Framer, Look, Protocol};
 pub use port::Port;
-pub use unit::{Complaint, Heard, Settings, Tally, Unit};
+pub use unit::{Complaint, Heard, Settings, Tally, TimeSource, Unit};

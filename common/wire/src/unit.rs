@@ -1,13 +1,19 @@
 //! A unit at the end of a wire.
 
+mod decimator;
 mod stream;
+mod time_source;
+
+pub use time_source::TimeSource;
 
 use crate::count::{Smooth, step};
 use crate::reading::{Reading, Stamp};
 use crate::{Clock, Counts, Detector, Device, Family};
+use decimator::Decimator;
 use messages::{ClockDomain, Flags, Header, ImuSample, MainAttitude};
 use std::fmt;
 use stream::Stream;
+use time_source::Word;
 
 /// A stamp that is further off its arrival's than this belongs to a clock that has started anew, ns.
 const RESTART_NS: i64 = 5_000_000_000;
@@ -30,8 +36,12 @@ pub struct Settings {
     pub device: Device,
     /// The nominal interval of its samples, ns.
     pub interval_ns: i64,
+    /// So many of them are summed to one that is given out; 1 for each as it is.
+    pub decimation: u32,
     /// From the time of validity to the least delayed arrival: filters of the device, sending, waking up; ns.
     pub latency_ns: i64,
+    /// Whose time counts.
+    pub time_source: TimeSource,
     /// 0 for the main unit, otherwise 1 + the index of the area.
     pub unit: u32,
     /// Which run the samples belong to.
@@ -43,7 +53,7 @@ pub struct Settings {
 /// A sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Heard {
-    /// Its time is the host's, its number counts from the run's epoch; in the unit's own axes.
+    /// Its time is the host's, its number counts from the run's epoch by what is given out; in the unit's own axes.
     pub sample: ImuSample,
     /// The vessel's attitude at the same instant, from devices that give it.
     pub attitude: Option<MainAttitude>,
@@ -73,7 +83,7 @@ pub enum Complaint {
     Range(u16),
     /// Another rate, Hz.
     Rate {
-        /// What was configured.
+        /// What was configured, before any are summed.
         told: f64,
         /// What comes.
         found: f64,
@@ -93,7 +103,10 @@ impl fmt::Display for Complaint {
             Self::GyroUnit => f.write_str("the device says that its gyros do not give what `rotation` tells"),
             Self::Range(range) => write!(f, "the device says that accel_range_g is {range}"),
             Self::Rate { told, found } => {
-                write!(f, "the unit gives {found:.1} samples a second, but rate_hz is {told}")
+                write!(
+                    f,
+                    "the unit gives {found:.1} samples a second, but rate_hz (times `decimation`, where that is told) is {told}"
+                )
             }
         }
     }
@@ -118,6 +131,10 @@ pub struct Tally {
     pub unsettled: u64,
     /// How often the device's clock started anew.
     pub restarts: u64,
+    /// Samples whose time is the device's own.
+    pub by_device: u64,
+    /// Samples whose time by the device was too far off that by the clock filter, which was taken.
+    pub disagreeing: u64,
     /// Samples given out.
     pub given: u64,
 }
@@ -142,7 +159,10 @@ pub struct Unit {
     stream: Stream,
     detector: Option<Detector>,
     clock: Clock,
+    /// UTC minus the host's monotonic clock, while the host's clock is disciplined, ns.
+    host_utc_ns: Option<i64>,
     smooth: Smooth,
+    decimator: Decimator,
     place: Option<Place>,
     /// Wraps that were assumed because an arrival was late, ns, and when.
     guess: Option<(i64, i64)>,
@@ -162,7 +182,9 @@ impl Unit {
             stream: Stream::new(settings.device),
             detector: Some(Detector::default()),
             clock: Clock::new(settings.latency_ns),
+            host_utc_ns: None,
             smooth: Smooth::new(crate::stdbin::TICK_NS),
+            decimator: Decimator::new(settings.decimation),
             place: None,
             guess: None,
             backward: 0,
@@ -172,6 +194,11 @@ impl Unit {
             complaint: None,
             tally: Tally::default(),
         }
+    }
+
+    /// Tells what the host knows of UTC, minus its monotonic clock, ns; `None` while nobody disciplines its clock.
+    pub fn tell_host_utc(&mut self, offset_ns: Option<i64>) {
+        self.host_utc_ns = offset_ns;
     }
 
     /// Takes bytes that came at `arrival_ns` of the host's monotonic clock.
@@ -196,7 +223,7 @@ impl Unit {
             self.tally.frames = self.stream.counts();
             match frame? {
                 stream::Told::Sample(reading) => {
-                    if let Some(heard) = self.sample(&reading) {
+                    if let Some(heard) = self.sample(&reading).and_then(|heard| self.decimator.take(heard)) {
                         self.tally.given += 1;
                         return Some(heard);
                     }
@@ -231,7 +258,7 @@ impl Unit {
         if reading.stamp.coarse {
             device_ns = self.smooth.time_ns(device_ns, place.regular_ns);
         }
-        let time_ns = self.clock.hear(device_ns, self.arrival_ns - reading.stamp.latency_ns);
+        let fitted_ns = self.clock.hear(device_ns, self.arrival_ns - reading.stamp.latency_ns);
         self.judge_rate(place.sequence);
         if !self.clock.settled() {
             self.tally.unsettled += 1;
@@ -243,6 +270,19 @@ impl Unit {
                 self.complaint = Some(Complaint::NoRotation);
             }
             return None;
+        };
+        // the tick is coarse, the smoothed time less so
+        let utc_ns = reading.utc_ns.map(|utc_ns| utc_ns + device_ns - place.device_ns);
+        let time_ns = match self.settings.time_source.word(utc_ns, self.host_utc_ns, fitted_ns) {
+            Word::Taken(time_ns) => {
+                self.tally.by_device += 1;
+                time_ns
+            }
+            Word::Refused => {
+                self.tally.disagreeing += 1;
+                fitted_ns
+            }
+            Word::None => fitted_ns,
         };
         let sequence = self.number(time_ns, place.sequence);
         let header = Header {
@@ -260,8 +300,7 @@ impl Unit {
         let attitude =
             reading.attitude.map(|(rotation, sigma)| MainAttitude { header, q: rotation.quaternion(), sigma });
         let sample = ImuSample { header, interval_ns, dtheta, dvel, flags, unit, ordinal: 0 };
-        // the tick is coarse, the smoothed time less so
-        let utc_offset_ns = reading.utc_ns.map(|utc_ns| utc_ns + device_ns - place.device_ns - time_ns);
+        let utc_offset_ns = utc_ns.map(|utc_ns| utc_ns - time_ns);
         Some(Heard { sample, attitude, device_ns, utc_offset_ns, arrival_ns: self.arrival_ns })
     }
 
@@ -348,6 +387,7 @@ impl Unit {
         self.tally.restarts += 1;
         self.clock.restart();
         self.smooth.restart();
+        self.decimator.restart();
         (self.guess, self.backward, self.pace) = (None, 0, None);
         // the time that has passed shows in the numbers too
         let passed = self.place.map_or(0, |before| self.arrival_ns - before.arrival_ns) / self.settings.interval_ns;

@@ -6,7 +6,7 @@ use frames::{Nav, Rot};
 use wire::kvh::{Extra, Inertial};
 use wire::stdbin::Telegram;
 use wire::stim300::{self, Cluster, Datagram};
-use wire::{Angle, Complaint, Device, Family, Heard, Rotation, Settings, Unit};
+use wire::{Angle, Complaint, Device, Family, Heard, Rotation, Settings, TimeSource, Unit};
 
 const INTERVAL_NS: i64 = 10_000_000;
 const EPOCH_NS: i64 = 7_000_000_000_000;
@@ -19,6 +19,8 @@ fn unit(device: Device) -> Unit {
     Unit::new(Settings {
         device,
         interval_ns: INTERVAL_NS,
+        decimation: 1,
+        time_source: TimeSource::Fitted,
         latency_ns: LATENCY_NS,
         unit: 1,
         run_id: 3,
@@ -284,6 +286,8 @@ fn a_stream_that_is_not_the_configured_one_is_named() {
     let mut slow = Unit::new(Settings {
         device: KVH,
         interval_ns: INTERVAL_NS / 2,
+        decimation: 1,
+        time_source: TimeSource::Fitted,
         latency_ns: 0,
         unit: 0,
         run_id: 0,

@@ -7,7 +7,7 @@ use crate::reader::{Common, Reader};
 use frames::{Case, Main, Nav, Rot};
 use messages::{Header, LineHealth, topic};
 use pipeline::configuration::{Configuration, Line, Source};
-use runtime::{Context, Feed, Node, Publisher};
+use runtime::{Context, Feed, Node, Publisher, host_utc};
 use std::sync::atomic::Ordering;
 use wire::{Heard, Settings, Unit};
 
@@ -58,7 +58,9 @@ impl Wired {
     ) -> Result<Self, AcquireError> {
         let settings = Settings {
             device: line.device,
-            interval_ns: configuration.interval_ns(),
+            interval_ns: configuration.interval_ns() / i64::from(line.decimation),
+            decimation: line.decimation,
+            time_source: line.time_source,
             latency_ns: line.latency_ns,
             unit: place as u32,
             run_id: context.run_id,
@@ -115,6 +117,8 @@ impl Wired {
 
     /// Publishes how the unit does, and adds it to the stage's own health.
     pub fn report(&mut self, feed: &mut Feed) -> Result<(), AcquireError> {
+        let host = host_utc();
+        self.unit.tell_host_utc(host.error_ns.map(|_| host.offset_ns));
         let (tally, clock, counts) = (self.unit.tally(), self.unit.clock(), &self.reader.counts);
         let before = self.health;
         let known = |value: f64| if value.is_finite() { value } else { 0.0 };
@@ -133,6 +137,8 @@ impl Wired {
             invalid: tally.invalid,
             unsettled: tally.unsettled,
             restarts: tally.restarts,
+            by_device: tally.by_device,
+            disagreeing: tally.disagreeing,
             overflow: counts.overflow.load(Ordering::Relaxed),
             unkept: counts.unkept.load(Ordering::Relaxed),
             opened: counts.opened.load(Ordering::Relaxed),

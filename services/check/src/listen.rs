@@ -4,7 +4,7 @@ use pipeline::configuration::{Configuration, Line as Told, Port};
 use runtime::line::Line;
 use runtime::monotonic_ns;
 use std::fmt;
-use wire::{Complaint, Detector, Family, Settings, Tally, Unit};
+use wire::{Complaint, Detector, Family, Settings, Tally, TimeSource, Unit};
 
 /// How long each unit is listened to, ns: the rate is judged by then.
 const LISTEN_NS: i64 = 6_000_000_000;
@@ -42,8 +42,11 @@ pub fn listen(configuration: &Configuration) -> impl Iterator<Item = Listened> {
 
 fn hear(name: &str, told: &Told, interval_ns: i64) -> Listened {
     let begin_ns = monotonic_ns();
-    let Told { device, latency_ns, .. } = *told;
-    let mut unit = Unit::new(Settings { device, interval_ns, latency_ns, unit: 0, run_id: 0, epoch_ns: begin_ns });
+    let Told { device, decimation, latency_ns, .. } = *told;
+    let interval_ns = interval_ns / i64::from(decimation);
+    let (time_source, unit, run_id, epoch_ns) = (TimeSource::Fitted, 0, 0, begin_ns);
+    let settings = Settings { device, interval_ns, decimation, latency_ns, time_source, unit, run_id, epoch_ns };
+    let mut unit = Unit::new(settings);
     let (mut line, mut detector) = (Line::new(told.port.clone()), Detector::default());
     let (mut bytes, mut buffer) = (0, vec![0; DATAGRAM]);
     while monotonic_ns() - begin_ns < LISTEN_NS {

@@ -2,6 +2,7 @@
 
 mod checkpoint;
 mod events;
+mod states;
 
 pub use events::Events;
 
@@ -11,6 +12,7 @@ use pipeline::alarm::AlarmWatch;
 use pipeline::configuration::Configuration;
 use pipeline::lane;
 use runtime::{Area, Context, Publisher, Sequence, Subscriber, Supply, TransportError, Waiter, monotonic_ns};
+use states::{Encoder, States};
 use std::time::Duration;
 
 /// How long a sleep may last without data.
@@ -25,13 +27,15 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
     let place = Area { index: area as u32, name };
     let path = context.domain.join(format!("estimate_{area}.json"));
     let before = if context.resume { Checkpoint::read(&path) } else { None };
-    // before the thread gets its class, or the other would have it too
+    // before the thread gets its class, or the others would have it too
     let mut keeper = Keeper::start(path)?;
+    let encoder = Encoder::start()?;
     let (stop, mut connection) = context.connect(Stage::Estimate, Some(place))?;
     let node = &connection.node;
     let pairs: Subscriber<ImuPair> = Subscriber::open(node, &topic::pair(name))?;
     let parameters: Subscriber<FlexureParams> = Subscriber::open(node, &topic::parameters(name))?;
     let solutions = Publisher::open(node, &topic::solution(name))?;
+    let mut states = States::open(node, encoder, place)?;
     let mut estimator = lane::estimator(configuration, area);
     let mut offered = before.and_then(|before| before.parameters());
     if let Some(before) = before {
@@ -64,6 +68,7 @@ pub fn run(configuration: &Configuration, area: usize, context: &Context) -> Res
             let mut solution = estimator.step(&pair);
             solution.header.stamps.solution_ns = monotonic_ns();
             solutions.publish(&solution)?;
+            states.see(estimator.as_ref(), &solution.header)?;
             sequence.see(&pair.header);
             beat.health.taken += 1;
             beat.health.given += 1;

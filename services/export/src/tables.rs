@@ -1,4 +1,4 @@
-//! Every topic but the samples: one table each.
+//! Every topic but the samples and the estimators' states: one table each.
 
 use messages::topic;
 use pipeline::configuration::Configuration;
@@ -32,7 +32,7 @@ impl Tables {
 
     /// Adds a row; samples and the attitude that goes with them have files of their own.
     pub fn write(&mut self, topic: &str, record: &Record) -> io::Result<()> {
-        if matches!(record, Record::Sample(_) | Record::Attitude(_)) {
+        if matches!(record, Record::Sample(_) | Record::Attitude(_) | Record::State(_)) {
             return Ok(());
         }
         let area = self.solutions.get(topic);

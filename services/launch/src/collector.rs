@@ -8,7 +8,7 @@ use crate::set::{RECORD, Role};
 use crate::{LaunchError, Options};
 use messages::{
     Flags, FlexureParams, Health, ImuPair, ImuSample, MainAttitude, OutputState, Scheduling, Solution, Stage, State,
-    Truth, topic,
+    StatePart, StateWish, Truth, topic,
 };
 use pipeline::configuration::Configuration;
 use pipeline::solution_file::SolutionFile;
@@ -35,17 +35,21 @@ struct Anchors {
     _samples: Vec<Anchor<ImuSample>>,
     _attitude: Anchor<MainAttitude>,
     _pairs: Vec<Anchor<ImuPair>>,
+    _states: Vec<(Anchor<StatePart>, Anchor<StateWish>)>,
 }
 
 impl Anchors {
     fn open(node: &Node, configuration: &Configuration) -> Result<Self, TransportError> {
         let mut samples = vec![Anchor::open(node, &topic::main_imu())?];
-        let mut pairs = Vec::new();
+        let (mut pairs, mut states) = (Vec::new(), Vec::new());
         for area in &configuration.areas {
             samples.push(Anchor::open(node, &topic::area_imu(&area.name))?);
             pairs.push(Anchor::open(node, &topic::pair(&area.name))?);
+            let (parts, wish) = (topic::state(&area.name), topic::state_wish(&area.name));
+            states.push((Anchor::open(node, &parts)?, Anchor::open(node, &wish)?));
         }
-        Ok(Self { _samples: samples, _attitude: Anchor::open(node, &topic::main_attitude())?, _pairs: pairs })
+        let attitude = Anchor::open(node, &topic::main_attitude())?;
+        Ok(Self { _samples: samples, _attitude: attitude, _pairs: pairs, _states: states })
     }
 }
 

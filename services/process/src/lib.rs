@@ -149,7 +149,7 @@ impl fmt::Display for Report {
             Some([x, y, z]) => format!("{x:.digits$} {y:.digits$} {z:.digits$}"),
             None => "unknown".to_owned(),
         };
-        for (area, counts) in self.summary.areas.iter().zip(&self.outcome.areas) {
+        for (place, area) in self.summary.areas.iter().enumerate() {
             writeln!(f, "area {}: {} solutions, {:.1} % valid", area.name, area.samples, 100.0 * area.valid_fraction)?;
             writeln!(
                 f,
@@ -170,8 +170,9 @@ impl fmt::Display for Report {
             if area.deck_rmse_arcsec.is_some() {
                 writeln!(f, "  deck rms error  {} arcsec about east, north, up", three(&area.deck_rmse_arcsec, 1))?;
             }
-            let Counts { missing, refused, suspect } = counts;
-            writeln!(f, "  samples missing {missing}, refused {refused}, suspect {suspect}")?;
+            if let Some(Counts { missing, refused, suspect }) = self.outcome.areas.get(place) {
+                writeln!(f, "  samples missing {missing}, refused {refused}, suspect {suspect}")?;
+            }
         }
         if self.outcome.unreadable_rows > 0 {
             writeln!(f, "{} rows of the recordings could not be read", self.outcome.unreadable_rows)?;

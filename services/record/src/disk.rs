@@ -175,6 +175,7 @@ impl Disk {
                 tracing::info!(path = %path.display(), part = about.part, "a file of the recording begins");
                 self.state = State::Open(Box::new(part));
                 self.names.advance();
+                self.tally.begin_file();
                 self.plan.about.from_the_start = false;
                 self.flushed = Instant::now();
                 self.keep_budget(&path);

@@ -125,6 +125,7 @@ impl Inputs {
             solutions.push(Solutions { port, adoption, params_id: 0, ended: false, last: Header::default() });
         }
         for name in &names {
+            opening.only(T::States, &topic::state(name), &mut others)?;
             opening.only(T::Parameters, &topic::parameters(name), &mut others)?;
             opening.only(T::Pairs, &topic::pair(name), &mut others)?;
         }

@@ -7,6 +7,7 @@ mod disk;
 mod inputs;
 mod names;
 mod tally;
+mod wishes;
 
 use crossbeam::channel::{Sender, TrySendError, bounded};
 use disk::{Disk, Plan};
@@ -19,6 +20,7 @@ use std::sync::Arc;
 use std::thread;
 use std::time::{Duration, SystemTime};
 use tally::Tally;
+use wishes::Wishes;
 
 /// How long the recorder leaves the ports alone; they hold 20 s.
 const NAP: Duration = Duration::from_millis(20);
@@ -69,6 +71,7 @@ pub fn run(configuration: &Configuration, context: &Context) -> Result<(), Recor
     let (stop, mut connection) = context.connect(Stage::Record, None)?;
     runtime::fail_beyond_file_limit()?;
     let mut inputs = Inputs::open(&connection.node, configuration, &settings.topics)?;
+    let mut wishes = Wishes::open(&connection.node, configuration, &settings.topics)?;
     let tally = Arc::new(Tally::default());
     let (to_disk, items) = bounded(BACKLOG);
     // the number of a run is the instant of its launch
@@ -86,6 +89,7 @@ pub fn run(configuration: &Configuration, context: &Context) -> Result<(), Recor
     let mut ended_ns = None;
     loop {
         inputs.drain(&mut outlet)?;
+        wishes.tell(tally.files())?;
         let now_ns = monotonic_ns();
         if inputs.ended() {
             ended_ns.get_or_insert(now_ns);

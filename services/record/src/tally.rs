@@ -11,6 +11,8 @@ pub struct Tally {
     overflow: AtomicU64,
     /// The disk did not take them.
     refused: AtomicU64,
+    /// Files that have been begun.
+    files: AtomicU64,
 }
 
 impl Tally {
@@ -28,6 +30,14 @@ impl Tally {
 
     pub fn write(&self, messages: u64) {
         self.written.fetch_add(messages, Ordering::Relaxed);
+    }
+
+    pub fn begin_file(&self) {
+        self.files.fetch_add(1, Ordering::Relaxed);
+    }
+
+    pub fn files(&self) -> u64 {
+        self.files.load(Ordering::Relaxed)
     }
 
     /// Messages that never came, by gaps in their numbers.

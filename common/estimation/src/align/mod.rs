@@ -7,6 +7,8 @@
 //! | least squares for a small rotation | [`least_squares`] |
 //! | analytic, with accelerometers | [`analytic`] |
 
+use serde::{Deserialize, Serialize};
+
 pub mod analytic;
 mod delay;
 pub mod least_squares;
@@ -40,7 +42,7 @@ pub trait Register: Send {
 }
 
 /// By how much the sub unit's stamps are late.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lag {
     /// s.
     pub delay: f64,
@@ -53,7 +55,7 @@ const LARGEST_SIGMA: f64 = 2.0 * unit::DEGREE;
 /// Least ratio of the second to the first singular value: below, the motion has one axis only.
 const LEAST_RATIO: f64 = 1e-3;
 /// A registered installation.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Registration {
     /// `C_s^m`, averaged over the windows.
     pub rotation: Rot<Main, Sub>,

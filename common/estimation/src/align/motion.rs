@@ -12,6 +12,7 @@ use super::{Register, Registration};
 use frames::{Main, Rot, Sub, Vec3, unit};
 use messages::{Flags, ImuPair};
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Length of a window, s.
 const WINDOW_S: f64 = 0.1;
@@ -23,7 +24,7 @@ const LEAST_SCALE_VARIANCE: f64 = 1e-18;
 const LEAST_WINDOWS: f64 = 40.0;
 
 /// Collects windows of both units' angle increments.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Registrar {
     /// Variance of a relative scale error.
     scale_variance: f64,
@@ -38,7 +39,7 @@ pub struct Registrar {
 }
 
 /// The window that is being filled.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Filling {
     a: Vector3<f64>,
     b: Vector3<f64>,

@@ -3,13 +3,14 @@
 use super::model;
 use crate::flexure::{Flexure, Hull};
 use messages::FlexureParams;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// Parameter sets that wait for their time.
 const WAITING: usize = 8;
 
 /// The set in force and those that wait.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Adoption {
     /// In the order of their time.
     waiting: VecDeque<FlexureParams>,

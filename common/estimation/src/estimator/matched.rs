@@ -2,15 +2,17 @@
 
 use super::adoption::Adoption;
 use super::{REGISTRATION_DOUBT, Settings, attitude_of_deck, guess, row_major};
-use crate::Estimator;
 use crate::align::{Register, Registration};
-use crate::evaluate::{Evaluate, Evidence};
+use crate::evaluate::{Evaluate, Evidence, Kept};
 use crate::filter::{Filter, symmetrise};
 use crate::flexure::Flexure;
 use crate::matching::{Accel, Model, Motion, Prediction, Start, View};
+use crate::state;
+use crate::{Estimator, Frozen, StateError};
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
 use messages::{Flags, FlexureParams, ImuPair, Solution};
 use nalgebra::{Matrix3, SMatrix};
+use serde::{Deserialize, Serialize};
 
 /// The flexure that is assumed while none is told or identified.
 const BROAD: Flexure = Flexure { mu: 0.3, b: 0.6, sigma: 10.0 * unit::ARCSEC };
@@ -52,6 +54,7 @@ pub struct Matched<M: Model<N, K>, const N: usize, const K: usize> {
     news: Flags,
 }
 
+#[derive(Clone, Serialize, Deserialize)]
 struct Running<M, const N: usize> {
     model: M,
     p: SMatrix<f64, N, N>,
@@ -66,6 +69,16 @@ struct Running<M, const N: usize> {
     start_m: Rot<MainStart, Main>,
     start_s: Rot<SubStart, Sub>,
     w_im_m: Vec3<Main>,
+}
+
+/// What another estimator of the same settings goes on from.
+#[derive(Serialize, Deserialize)]
+struct State<M, const N: usize> {
+    evaluation: Kept,
+    since_ns: Option<i64>,
+    adoption: Adoption,
+    running: Running<M, N>,
+    news: Flags,
 }
 
 impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
@@ -153,6 +166,12 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Matched<M, N, K> {
         } else {
             self.reset();
         }
+    }
+
+    /// Of all that tells one estimator from another but for how it registers, which is over when there is a state.
+    fn fingerprint(&self) -> u64 {
+        let MatchedSettings { area, accel, lever_arm, filter, registration: _, options } = &self.settings;
+        state::fingerprint(&(std::any::type_name::<M>(), area, accel, lever_arm, filter, options))
     }
 
     /// The least time from one update to the next.
@@ -251,6 +270,32 @@ impl<M: Model<N, K>, const N: usize, const K: usize> Estimator for Matched<M, N,
         }
         flags |= std::mem::take(&mut self.news);
         self.publish(pair, flags)
+    }
+
+    fn freeze(&self) -> Option<Frozen> {
+        // a field that the estimator gets and the state does not is an error here; there is no registration beside a filter
+        let Self { settings: _, evaluation, registration: _, since_ns, adoption, running, news } = self;
+        let state = State {
+            evaluation: evaluation.kept(),
+            since_ns: *since_ns,
+            adoption: adoption.clone(),
+            running: running.clone()?,
+            news: *news,
+        };
+        let settings = self.fingerprint();
+        Some(Box::new(move || state::seal(settings, &state)))
+    }
+
+    fn thaw(&mut self, state: &[u8]) -> Result<(), StateError> {
+        let State { evaluation, since_ns, adoption, running, news } =
+            state::open::<State<M, N>>(self.fingerprint(), state)?;
+        if !evaluation.is_like(&self.evaluation.kept()) {
+            return Err(StateError::Settings);
+        }
+        self.evaluation = evaluation.evaluate();
+        self.registration = None;
+        (self.since_ns, self.adoption, self.running, self.news) = (since_ns, adoption, Some(running), news);
+        Ok(())
     }
 }
 

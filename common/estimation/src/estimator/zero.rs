@@ -3,7 +3,7 @@
 //! `C' = C Exp(zero)^T`. The turn stands at the sub unit's side, where a badly known mounting would: the dynamic part, rates, covariances
 //! and ranges, which are seen in the main unit's axes, do not change by a bit.
 
-use crate::Estimator;
+use crate::{Estimator, Frozen, StateError};
 use frames::{Main, Nav, Rot, Sub, Vec3};
 use messages::{Flags, FlexureParams, ImuPair, Solution};
 
@@ -35,6 +35,15 @@ impl Estimator for Zeroed {
     fn resume(&mut self, last: &Solution) {
         let estimated = Rot::<Main, Sub>::from_wxyz(last.static_q) * Rot::<Sub, Sub>::exp(self.zero);
         self.inner.resume(&Solution { static_q: estimated.quaternion(), ..*last });
+    }
+
+    /// The zero acts on what is told and not on what is estimated.
+    fn freeze(&self) -> Option<Frozen> {
+        self.inner.freeze()
+    }
+
+    fn thaw(&mut self, state: &[u8]) -> Result<(), StateError> {
+        self.inner.thaw(state)
     }
 }
 

@@ -11,11 +11,12 @@
 
 use super::error_range::others;
 use super::window::Window;
-use super::{Evaluate, Evidence};
+use super::{Evaluate, Evidence, Kept};
 use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
 
 /// Half width about each axis, of the static part; the filter's deviations are those of the total.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Coherence {
     factor: [f64; 3],
     /// Of the squares of the ship's rate, then of the variances of the flexure's rate.
@@ -29,6 +30,10 @@ impl Coherence {
     /// A range for a coherence of at most so much about each axis, 0 to 1.
     pub fn new(factor: [f64; 3]) -> Self {
         Self { factor, window: Window::new() }
+    }
+
+    pub(super) fn factor(&self) -> [f64; 3] {
+        self.factor
     }
 }
 
@@ -46,5 +51,9 @@ impl Evaluate for Coherence {
             let coherent = (mean[a] * mean[3 + b] + mean[b] * mean[3 + a]).sqrt();
             own[k] + self.factor[k] * coherent / (mean[a] + mean[b]).max(f64::MIN_POSITIVE)
         })
+    }
+
+    fn kept(&self) -> Kept {
+        Kept::Coherence(self.clone())
     }
 }

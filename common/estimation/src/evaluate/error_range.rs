@@ -11,11 +11,12 @@
 //! own deviation made some five times larger, which no other scenario bears out; [`super::Coherence`] replaces it.
 
 use super::window::Window;
-use super::{Evaluate, Evidence};
+use super::{Evaluate, Evidence, Kept};
 use nalgebra::{SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Half width `F |e|` about each axis, of the static part.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ErrorRange {
     factor: [f64; 3],
     /// Of the squares of the ship's rate, then of its products `w_a d_b - w_b d_a`.
@@ -26,6 +27,10 @@ impl ErrorRange {
     /// A range with the coefficient F of each axis, s^-1/2.
     pub fn new(factor: [f64; 3]) -> Self {
         Self { factor, window: Window::new() }
+    }
+
+    pub(super) fn factor(&self) -> [f64; 3] {
+        self.factor
     }
 }
 
@@ -52,6 +57,10 @@ impl Evaluate for ErrorRange {
             let (a, b) = others(k);
             self.factor[k] * mean[3 + k].abs() / (mean[a] + mean[b]).max(f64::MIN_POSITIVE)
         })
+    }
+
+    fn kept(&self) -> Kept {
+        Kept::ErrorRange(self.clone())
     }
 }
 

@@ -12,6 +12,7 @@
 pub mod against;
 mod coherence;
 mod error_range;
+mod kept;
 mod observed;
 mod spectrum;
 mod stretch;
@@ -19,12 +20,14 @@ mod window;
 
 pub use coherence::Coherence;
 pub use error_range::ErrorRange;
+pub use kept::Kept;
 pub use observed::Observed;
 pub use spectrum::{Band, Spectrum};
 pub use stretch::Stretch;
 
 use frames::{Main, Vec3};
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Deviations that hold 95 % of a normal error.
 pub const NORMAL_95: f64 = 1.96;
@@ -59,14 +62,20 @@ pub trait Evaluate: Send {
     fn hidden(&self) -> Option<Vector3<f64>> {
         None
     }
+    /// All that it has seen.
+    fn kept(&self) -> Kept;
 }
 
 /// So many standard deviations of the total: [`NORMAL_95`], or 3 for the naive range of paper 004.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Deviations(pub f64);
 
 impl Evaluate for Deviations {
     fn range(&mut self, evidence: &Evidence) -> [f64; 3] {
         evidence.covariance.diagonal().map(|variance| self.0 * variance.sqrt()).into()
+    }
+
+    fn kept(&self) -> Kept {
+        Kept::Deviations(*self)
     }
 }

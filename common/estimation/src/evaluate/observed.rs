@@ -11,8 +11,9 @@
 
 use super::error_range::others;
 use super::window::Window;
-use super::{Evaluate, Evidence, NORMAL_95};
+use super::{Evaluate, Evidence, Kept, NORMAL_95};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// How many times the angle of the coherence that is seen counts, and how much that of full coherence.
 const SEEN: f64 = 2.0;
@@ -29,7 +30,7 @@ const REGRESSORS: usize = 6;
 const MEANS: usize = REGRESSORS * REGRESSORS + REGRESSORS * 3 + 6;
 
 /// Half width about each axis of the total.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Observed {
     window: Window<MEANS>,
     waiting_s: f64,
@@ -120,6 +121,10 @@ impl Evaluate for Observed {
 
     fn hidden(&self) -> Option<Vector3<f64>> {
         Some(self.coherent / NORMAL_95)
+    }
+
+    fn kept(&self) -> Kept {
+        Kept::Observed(self.clone())
     }
 }
 

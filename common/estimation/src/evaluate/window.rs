@@ -1,4 +1,6 @@
 use nalgebra::SVector;
+use serde::de::{Deserializer, Error};
+use serde::{Deserialize, Serialize};
 
 /// How far back the means reach, s.
 const LENGTH_S: f64 = 3600.0;
@@ -6,17 +8,30 @@ const LENGTH_S: f64 = 3600.0;
 const BLOCKS: usize = 60;
 
 /// Means over the last hour, by blocks of a minute, so that the memory is bounded.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Window<const N: usize> {
-    blocks: [Block<N>; BLOCKS],
+    /// [`BLOCKS`] of them.
+    #[serde(deserialize_with = "blocks")]
+    blocks: Box<[Block<N>]>,
     /// The block that is being filled.
+    #[serde(deserialize_with = "place")]
     now: usize,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Block<const N: usize> {
     integral: SVector<f64, N>,
     length_s: f64,
+}
+
+fn blocks<'de, D: Deserializer<'de>, const N: usize>(deserializer: D) -> Result<Box<[Block<N>]>, D::Error> {
+    let blocks = Box::<[Block<N>]>::deserialize(deserializer)?;
+    if blocks.len() == BLOCKS { Ok(blocks) } else { Err(D::Error::invalid_length(blocks.len(), &"a block a minute")) }
+}
+
+fn place<'de, D: Deserializer<'de>>(deserializer: D) -> Result<usize, D::Error> {
+    let place = usize::deserialize(deserializer)?;
+    if place < BLOCKS { Ok(place) } else { Err(D::Error::custom("there is no such block")) }
 }
 
 impl<const N: usize> Block<N> {
@@ -27,7 +42,7 @@ impl<const N: usize> Block<N> {
 
 impl<const N: usize> Window<N> {
     pub(super) fn new() -> Self {
-        Self { blocks: [Block::empty(); BLOCKS], now: 0 }
+        Self { blocks: Box::new([Block::empty(); BLOCKS]), now: 0 }
     }
 
     /// Takes in values that held for `interval_s`, and gives the means by now; `None` before there are any.

@@ -5,9 +5,11 @@ use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
 use crate::flexure::Flexure;
 use frames::{Main, Rot, Sub};
 use nalgebra::Vector3;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 /// What is particular about a matching by angles.
-pub trait AngleModel: Clone + Send {
+pub trait AngleModel: Clone + Send + Serialize + DeserializeOwned + 'static {
     /// What the total stands on.
     fn base(_start: &Start) -> Rot<Main, Sub> {
         Rot::identity()

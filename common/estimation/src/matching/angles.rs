@@ -19,6 +19,7 @@ use super::{Motion, Prediction, Start, Turn, View, rows_of, three};
 use crate::flexure::Flexure;
 use frames::{Main, MainStart, Rot, Sub, SubStart};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Size of the error state.
 pub const STATES: usize = 18;
@@ -45,7 +46,7 @@ pub type State = SVector<f64, STATES>;
 const TURN: Turn = Turn { fixed: STATIC, flexure: FLEXURE, rate: FLEXURE_RATE };
 
 /// The states, and what has come in since they were last propagated.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Angles {
     grade: Grade,
     flexure: [Flexure; 3],

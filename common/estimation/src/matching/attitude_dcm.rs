@@ -21,6 +21,7 @@ use super::{Matching, Model, Motion, Observation, Prediction, Start, Turn, View,
 use crate::flexure::Flexure;
 use frames::{Main, Rot, Sub};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Size of the error state.
 pub const STATES: usize = 21;
@@ -32,7 +33,7 @@ const BIAS: [usize; 2] = [15, 18];
 const TURN: Turn = Turn { fixed: STATIC, flexure: FLEXURE, rate: RATE };
 
 /// Which use of attitude matching.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Options {
     /// Standard deviation of the white noise of the measurement, rad.
     pub noise: f64,
@@ -41,7 +42,7 @@ pub struct Options {
 }
 
 /// The nominal state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct AttitudeDcm {
     options: Options,
     grade: Grade,

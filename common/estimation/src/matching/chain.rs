@@ -8,6 +8,7 @@ use super::{Motion, Prediction};
 use crate::align::Lag;
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Place of the bias behind that of the constant.
 pub(super) const BIAS: usize = 3;
@@ -15,7 +16,7 @@ pub(super) const BIAS: usize = 3;
 pub(super) const DELAY: usize = 6;
 
 /// What is estimated of a chain.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Link {
     /// `N`.
     pub constant: Rot<MainStart, SubStart>,
@@ -43,7 +44,7 @@ impl Link {
 }
 
 /// Both units' attitudes, and what has come in since the last propagation.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Chain {
     /// Place of the constant in the error state.
     at: usize,

@@ -4,9 +4,10 @@ use super::Motion;
 use super::grade::Grade;
 use frames::{Main, MainStart, Rot, SubStart, Vec3};
 use nalgebra::{Matrix3, SMatrix};
+use serde::{Deserialize, Serialize};
 
 /// What has come in since the last propagation.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Since {
     /// Its duration, s.
     pub time_s: f64,

@@ -10,9 +10,10 @@ use super::angles::{Angles, BIAS, CONSTANT, Rows, STATES};
 use super::{Prediction, View};
 use frames::{Main, MainStart, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// The nominal state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ExactAttitude {
     angles: Angles,
 }

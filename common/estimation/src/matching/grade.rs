@@ -3,6 +3,7 @@
 use super::so3::symmetric;
 use frames::{Main, Rot, Sub, unit};
 use nalgebra::{Matrix3, Matrix6, SMatrix, SVector};
+use serde::{Deserialize, Serialize};
 
 /// Regularises a measurement that has no noise of its own, rad: the random walk of integrated rates is that of the constant.
 pub(super) const MATCHING_SIGMA: f64 = 0.05 * unit::ARCSEC;
@@ -17,7 +18,7 @@ const INCONSTANT: f64 = 0.1;
 const INCONSTANT_S: f64 = 1.0;
 
 /// The figures of one unit's gyros.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Gyro {
     /// Angular random walk, rad/sqrt(s).
     pub arw: f64,
@@ -34,7 +35,7 @@ pub struct Gyro {
 }
 
 /// What the model takes as given.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Grade {
     /// Main unit.
     pub main: Gyro,

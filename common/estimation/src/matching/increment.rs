@@ -6,9 +6,10 @@
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
 use messages::{Flags, ImuPair};
 use nalgebra::Matrix3;
+use serde::{Deserialize, Serialize};
 
 /// What both units felt over a time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Increment {
     /// The end, data time in ns.
     pub time_ns: i64,
@@ -31,7 +32,7 @@ pub struct Increment {
 }
 
 /// Velocity increments of both units, each in its own starting axes, m/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Velocities {
     /// Main unit.
     pub m: Vec3<MainStart>,
@@ -66,12 +67,12 @@ impl Increment {
 }
 
 /// Makes increments of the pairs of an epoch that have data.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Increments {
     last: Option<Last>,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Last {
     time_ns: i64,
     a_m: Rot<MainStart, Main>,

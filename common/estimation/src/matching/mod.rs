@@ -1,5 +1,9 @@
 //! Matching models: what the difference of two units' attitudes, rates or velocities says about the deformation.
 
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use std::fmt::Debug;
+
 pub mod angle_model;
 pub mod angles;
 pub mod attitude_dcm;
@@ -109,7 +113,7 @@ pub struct Start {
 }
 
 /// Figures of the accelerometers of both units, one standard deviation each.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Accel {
     /// Relative velocity random walk, m/s/sqrt(s).
     pub vrw: f64,
@@ -118,9 +122,11 @@ pub struct Accel {
 }
 
 /// A matching model that an estimator can run.
-pub trait Model<const N: usize, const K: usize>: Matching<N, K> + Send {
+pub trait Model<const N: usize, const K: usize>:
+    Matching<N, K> + Send + Serialize + DeserializeOwned + 'static
+{
     /// What distinguishes one use of the model from another.
-    type Options: Clone + Send;
+    type Options: Clone + Debug + Send;
     /// The state at the filter's start, with its covariance.
     fn begin(options: &Self::Options, start: &Start) -> (Self, SMatrix<f64, N, N>);
     /// Starts from what registration has found out about the delay; a model without one lets it be.

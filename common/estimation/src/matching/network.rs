@@ -9,6 +9,7 @@ use nalgebra::{SMatrix, SVector, Vector3};
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
+use serde::{Deserialize, Serialize};
 
 /// Neurons of the hidden layer.
 pub const HIDDEN: usize = 5;
@@ -22,7 +23,7 @@ pub const OFFSET: usize = WEIGHTS - 3;
 type Hidden = SVector<f64, HIDDEN>;
 
 /// The network; inputs and outputs are numbers of about one.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Network {
     /// All weights in the order of the file's head.
     pub weights: SVector<f64, WEIGHTS>,

@@ -21,6 +21,7 @@ use super::{Matching, Model, Motion, Observation, Prediction, Start, View};
 use crate::flexure::Flexure;
 use frames::{Main, Rot, Sub, unit};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Size of the error state.
 pub const STATES: usize = angles::STATES + WEIGHTS;
@@ -44,7 +45,7 @@ pub trait AngleMatching: AngleModel {
 }
 
 /// How the network enters the measurement.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Form {
     /// In place of the deformation, as printed.
     Literal,
@@ -54,7 +55,7 @@ pub enum Form {
 }
 
 /// Which network.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Options {
     /// How it enters the measurement.
     pub form: Form,
@@ -65,7 +66,7 @@ pub struct Options {
 }
 
 /// The nominal state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Neural<M> {
     inner: M,
     form: Form,

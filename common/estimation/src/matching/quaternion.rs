@@ -34,6 +34,7 @@ use crate::align::Lag;
 use crate::flexure::Flexure;
 use frames::{Main, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Size of the error state.
 pub const STATES: usize = 20;
@@ -47,7 +48,7 @@ const DELAY: usize = CONSTANT + chain::DELAY;
 const SKEW: usize = 19;
 
 /// Which use of the model.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Options {
     /// Density of the random walk of the static part, rad^2/s.
     pub static_walk: f64,
@@ -58,7 +59,7 @@ pub struct Options {
 }
 
 /// What is known of the delay before the filter starts.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct DelayOptions {
     /// Standard deviation of the delay, s; 0 if there is none.
     pub sigma: f64,
@@ -69,7 +70,7 @@ pub struct DelayOptions {
 }
 
 /// The nominal state.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct State {
     static_part: Rot<Main, Sub>,
     static_rate: Vec3<Main>,
@@ -103,7 +104,7 @@ impl State {
 }
 
 /// The model.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Quaternion {
     options: Options,
     flexure: [Flexure; 3],

@@ -29,6 +29,7 @@ use crate::align::Lag;
 use crate::flexure::Flexure;
 use frames::{Main, Rot, Sub, Vec3, unit};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Size of the error state.
 pub const STATES: usize = WEIGHTS + 7;
@@ -47,7 +48,7 @@ const OFFSET_SIGMA: f64 = 10.0;
 const FIRST_WEIGHTS: [f64; 2] = [0.5, 0.1];
 
 /// What the network gets to see.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Input {
     /// The measurement.
     #[default]
@@ -59,7 +60,7 @@ pub enum Input {
 }
 
 /// Which use of the model.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Options {
     /// What the network gets to see.
     pub input: Input,
@@ -74,14 +75,14 @@ pub struct Options {
 }
 
 /// The nominal state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct State {
     network: Network,
     link: Link,
 }
 
 /// The model.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct QuaternionNetwork {
     options: Options,
     installation: Rot<Main, Sub>,

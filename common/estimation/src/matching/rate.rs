@@ -16,6 +16,7 @@ use super::{Matching, Model, Motion, Observation, Prediction, Start, Turn, View,
 use crate::flexure::Flexure;
 use frames::{Main, Rot, Sub};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Size of the error state.
 pub const STATES: usize = 12;
@@ -26,14 +27,14 @@ const BIAS: usize = 9;
 const TURN: Turn = Turn { fixed: STATIC, flexure: FLEXURE, rate: RATE };
 
 /// Which use of rate matching.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Options {
     /// Density of the random walk of the static part, rad^2/s.
     pub static_walk: f64,
 }
 
 /// The nominal state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RateMatching {
     options: Options,
     grade: Grade,

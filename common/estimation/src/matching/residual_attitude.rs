@@ -14,9 +14,10 @@ use super::neural::AngleMatching;
 use super::{Start, rows_of};
 use frames::{Main, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// The nominal state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct ResidualAttitude {
     /// The states.
     pub angles: Angles,

@@ -10,6 +10,7 @@
 use super::Motion;
 use super::increment::{Increment, Velocities};
 use frames::{Frame, Main, MainStart, Rot, Sub, SubStart, Vec3};
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// The largest shift, s.
@@ -26,7 +27,7 @@ const ROOM: usize = 1280;
 const POINTS: usize = 4;
 
 /// Both units at one moment, but for what the shift is wrong by.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Together {
     /// The main unit's accumulated attitude.
     pub a_m: Rot<MainStart, Main>,
@@ -38,7 +39,7 @@ pub struct Together {
     pub gained: Velocities,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Node {
     time_s: f64,
     a_m: Rot<MainStart, Main>,
@@ -54,7 +55,7 @@ struct Place {
 }
 
 /// Attitudes that a filter re-times by the delay as it is known.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Retimed {
     attitudes: Attitudes,
     /// Whether a rest of the delay goes into the shift at all.
@@ -109,21 +110,24 @@ impl Retimed {
 }
 
 /// The attitudes of the last second.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Attitudes {
     nodes: VecDeque<Node>,
+    /// How many are kept at most.
+    room: usize,
 }
 
 impl Attitudes {
     /// Room for so many.
     pub fn new(room: usize) -> Self {
-        Self { nodes: VecDeque::with_capacity(room) }
+        Self { nodes: VecDeque::with_capacity(room), room }
     }
 
     /// Those of instants in order, s, without velocities.
     pub fn of(instants: impl Iterator<Item = (f64, Rot<MainStart, Main>, Rot<SubStart, Sub>)>) -> Self {
         let node = |(time_s, a_m, a_s)| Node { time_s, a_m, a_s, gained: Velocities::ZERO };
-        Self { nodes: instants.map(node).collect() }
+        let nodes: VecDeque<Node> = instants.map(node).collect();
+        Self { room: nodes.len(), nodes }
     }
 
     /// Takes in what both units felt.
@@ -145,7 +149,7 @@ impl Attitudes {
         while self.nodes.len() > POINTS && self.nodes[0].time_s < oldest_s {
             self.nodes.pop_front();
         }
-        if self.nodes.len() == self.nodes.capacity() {
+        if self.nodes.len() >= self.room {
             self.nodes.pop_front();
         }
         self.nodes.push_back(node);

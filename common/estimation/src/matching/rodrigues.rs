@@ -27,6 +27,7 @@ use super::{Accel, Matching, Model, Motion, Observation, Prediction, Start, View
 use crate::flexure::Flexure;
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Size of the error state.
 pub const STATES: usize = 24;
@@ -55,7 +56,7 @@ type Block = SMatrix<f64, 3, STATES>;
 type Arm = SMatrix<f64, 3, 6>;
 
 /// What is published as the deformation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Output {
     /// The chain of both gyros' attitudes through the estimated constant.
     #[default]
@@ -65,7 +66,7 @@ pub enum Output {
 }
 
 /// Which use of the model.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Options {
     /// What is published.
     pub output: Output,
@@ -82,7 +83,7 @@ impl Default for Options {
 }
 
 /// The nominal state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct RodriguesMatching {
     options: Options,
     grade: Grade,
@@ -103,7 +104,7 @@ pub struct RodriguesMatching {
 }
 
 /// Rates of the last sample, in the frozen frames.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Sample {
     interval_s: f64,
     w_m: Vector3<f64>,
@@ -113,7 +114,7 @@ struct Sample {
 }
 
 /// Velocities since an instant of the filter, m/s.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Velocities {
     m: Vector3<f64>,
     s: Vector3<f64>,
@@ -124,7 +125,7 @@ struct Velocities {
 }
 
 /// What has come since the last propagation.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 struct Pending {
     time_s: f64,
     variance: f64,

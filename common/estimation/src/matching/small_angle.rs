@@ -13,9 +13,10 @@ use super::neural::AngleMatching;
 use super::{View, rows_of};
 use frames::{Main, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// The nominal state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SmallAngle {
     /// The states.
     pub angles: Angles,

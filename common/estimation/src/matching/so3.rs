@@ -28,6 +28,7 @@ use super::{Matching, Observation, Prediction, rows_of};
 use crate::flexure::{Flexure, Hull};
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Size of the error state.
 pub const STATES: usize = 33;
@@ -85,7 +86,7 @@ fn by_scale(w: Vector3<f64>) -> ByScale {
 }
 
 /// What has come in since the last propagation.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Since {
     time_s: f64,
     /// `sum A_m dt`: how a bias error turns the constant.
@@ -104,7 +105,7 @@ impl Default for Since {
 }
 
 /// The nominal state of one area.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct So3 {
     grade: Grade,
     hull: Hull,

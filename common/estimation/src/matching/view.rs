@@ -2,9 +2,10 @@
 
 use frames::{Main, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// What a model has to say at an instant; `rows` give the error of what stands beside them from the error state.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct View<const N: usize> {
     /// Total deformation.
     pub deformation: Rot<Main, Sub>,

@@ -5,7 +5,7 @@ use super::quantity;
 use frames::unit::nanoseconds;
 use serde::Deserialize;
 use std::path::PathBuf;
-use wire::{Angle, Device, Port, Rotation};
+use wire::{Angle, Device, Port, Rotation, TimeSource};
 
 /// A unit that speaks on a wire.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +14,11 @@ pub struct Line {
     pub device: Device,
     /// Where its bytes come from; the path of a file is absolute.
     pub port: Port,
-    /// From the time of validity to the least delayed arrival, ns: subtracted from every time.
+    /// Whose time of a sample counts.
+    pub time_source: TimeSource,
+    /// So many of its samples are summed to one.
+    pub decimation: u32,
+    /// From the time of validity to the least delayed arrival, ns: subtracted from every time. The group delay of the filter that is told is in it.
     pub latency_ns: i64,
     /// Where the bytes are kept with the times of their arrival; the path is absolute.
     pub raw: Option<PathBuf>,
@@ -34,6 +38,11 @@ pub(super) struct SourceTable {
     rotation: Option<RotationKey>,
     angle: Option<AngleKey>,
     accel_range_g: Option<u16>,
+    low_pass_hz: Option<u16>,
+    decimation: Option<u32>,
+    clock: Option<ClockKey>,
+    #[serde(default, deserialize_with = "quantity::clock_bound_ms")]
+    clock_bound_ms: Option<f64>,
     #[serde(default, deserialize_with = "quantity::latency_ms")]
     latency_ms: Option<f64>,
     raw: Option<PathBuf>,
@@ -53,6 +62,17 @@ pub(super) enum AngleKey {
     Degrees,
 }
 
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum ClockKey {
+    Fitted,
+    Device,
+}
+
+/// How far a device's time may be off the filter's, s.
+const CLOCK_BOUND_S: f64 = 2e-3;
+/// From the fastest unit to the slowest run.
+const LARGEST_DECIMATION: u32 = 1000;
 const DEFAULT_BAUD: u32 = 921_600;
 
 impl SourceTable {
@@ -67,6 +87,10 @@ impl SourceTable {
             (self.rotation.is_some(), "rotation"),
             (self.angle.is_some(), "angle"),
             (self.accel_range_g.is_some(), "accel_range_g"),
+            (self.low_pass_hz.is_some(), "low_pass_hz"),
+            (self.decimation.is_some(), "decimation"),
+            (self.clock.is_some(), "clock"),
+            (self.clock_bound_ms.is_some(), "clock_bound_ms"),
             (self.latency_ms.is_some(), "latency_ms"),
             (self.raw.is_some(), "raw"),
         ];
@@ -109,9 +133,38 @@ impl SourceTable {
                 Device::Stdbin
             }
         };
-        let latency_ns = nanoseconds(self.latency_ms.unwrap_or(0.0));
-        let raw = self.raw.clone();
-        Ok(Line { device, port: self.port(name)?, latency_ns, raw })
+        let latency_ns = nanoseconds(self.latency_ms.unwrap_or(0.0)) + self.group_delay_ns()?;
+        let decimation = self.decimation.unwrap_or(1);
+        if !(1..=LARGEST_DECIMATION).contains(&decimation) {
+            return Err(format!("decimation = {decimation}: must be within 1 to {LARGEST_DECIMATION}"));
+        }
+        let (time_source, raw) = (self.time_source()?, self.raw.clone());
+        Ok(Line { device, port: self.port(name)?, time_source, decimation, latency_ns, raw })
+    }
+
+    /// Of the devices that are known only STDBIN tells UTC.
+    fn time_source(&self) -> Result<TimeSource, String> {
+        match (self.clock, self.clock_bound_ms) {
+            (Some(ClockKey::Device), bound_s) if matches!(self.kind, Kind::Stdbin) => {
+                Ok(TimeSource::Device { bound_ns: nanoseconds(bound_s.unwrap_or(CLOCK_BOUND_S)) })
+            }
+            (Some(ClockKey::Device), _) => Err(format!(
+                "a source of kind \"{}\" tells no UTC: clock = \"device\" has no meaning",
+                self.kind.name()
+            )),
+            (_, Some(_)) => Err("`clock_bound_ms` goes with clock = \"device\" only".to_owned()),
+            _ => Ok(TimeSource::Fitted),
+        }
+    }
+
+    /// Of the low-pass filter that a STIM300 was told.
+    fn group_delay_ns(&self) -> Result<i64, String> {
+        let Some(told) = self.low_pass_hz else { return Ok(0) };
+        if !matches!(self.kind, Kind::Stim300) {
+            return Err(format!("a source of kind \"{}\" has no `low_pass_hz`", self.kind.name()));
+        }
+        wire::stim300::group_delay_ns(told)
+            .ok_or_else(|| format!("low_pass_hz = {told}: must be one of 16, 33, 66, 131, 262"))
     }
 
     fn port(self, name: &str) -> Result<Port, String> {

@@ -178,6 +178,7 @@ quantities! {
     delay_ms: 1e-3, -1000.0, 1000.0;
     milliseconds: 1e-3, 0.0, 1000.0;
     latency_ms: 1e-3, 0.0, 1000.0;
+    clock_bound_ms: 1e-3, 0.01, 1000.0;
     jitter_us: 1e-6, 0.0, 1e5;
     frequency_hz: 1.0, 0.0, 20.0;
     band_limit_hz: 1.0, 0.05, 5.0;

@@ -40,6 +40,8 @@ pub enum RecordTopic {
     Parameters,
     /// The solutions.
     Solutions,
+    /// The estimators' states, so that a replay can begin in the middle.
+    States,
     /// How the stages do.
     Health,
     /// The truth, where there is one.
@@ -74,7 +76,7 @@ fn rotate() -> f64 {
 
 fn everything() -> Vec<RecordTopic> {
     use RecordTopic as T;
-    vec![T::Samples, T::Pairs, T::Parameters, T::Solutions, T::Health, T::Truth]
+    vec![T::Samples, T::Pairs, T::Parameters, T::Solutions, T::States, T::Health, T::Truth]
 }
 
 fn topics<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<RecordTopic>, D::Error> {

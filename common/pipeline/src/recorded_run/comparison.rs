@@ -14,6 +14,8 @@ pub struct Comparison {
     areas: HashMap<String, usize>,
     waiting: Vec<VecDeque<Solution>>,
     found: Vec<Likeness>,
+    /// Of each area, the sample from behind which on solutions are compared.
+    after: Vec<Option<u64>>,
 }
 
 /// What the comparison of an area's solutions gave.
@@ -27,6 +29,8 @@ pub struct Likeness {
     pub unrecorded: u64,
     /// Recorded solutions that the replay does not give, because their samples are missing.
     pub unrepeated: u64,
+    /// Recorded solutions from before the state that the replay starts from.
+    pub before: u64,
     /// The first sample whose solutions differ: its number and time, ns.
     pub first: Option<(u64, i64)>,
 }
@@ -43,7 +47,13 @@ impl Comparison {
             areas: names.map(|(index, area)| (topic::solution(&area.name).name, index)).collect(),
             waiting: configuration.areas.iter().map(|_| VecDeque::new()).collect(),
             found: vec![Likeness::default(); configuration.areas.len()],
+            after: vec![None; configuration.areas.len()],
         })
+    }
+
+    /// Compares the solutions of an area from behind a sample on, by its number.
+    pub fn after(&mut self, area: usize, number: u64) {
+        self.after[area] = Some(number);
     }
 
     /// Takes the next solution of the replay.
@@ -78,7 +88,11 @@ impl Comparison {
     fn read_on(&mut self) -> bool {
         let Some((topic, record)) = self.files.next() else { return false };
         if let (Some(area), Record::Solution(solution)) = (self.areas.get(&topic), record) {
-            self.waiting[*area].push_back(solution);
+            if self.after[*area].is_some_and(|number| solution.header.sequence <= number) {
+                self.found[*area].before += 1;
+            } else {
+                self.waiting[*area].push_back(solution);
+            }
         }
         true
     }

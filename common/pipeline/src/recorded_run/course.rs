@@ -1,6 +1,7 @@
 //! How a recorded run went: which parameter set took effect at which sample, and who was started again.
 
-use super::{Files, adoption_topic};
+use super::start::Starts;
+use super::{Files, Start, adoption_topic};
 use crate::configuration::{Area, Configuration};
 use crate::recording::RecordingError;
 use messages::{FlexureParams, topic};
@@ -41,6 +42,10 @@ pub struct Course {
     pub restarts: Vec<(String, u64)>,
     /// Of each area, the sample numbers at which a parameter set took effect; `None` if they are not all recorded.
     adoptions: Vec<Option<VecDeque<(u64, FlexureParams)>>>,
+    /// Whether the run's first sample is recorded.
+    from_the_start: bool,
+    /// Of each area, the first state of its estimator that is of use; none in a recording from the run's start.
+    starts: Vec<Option<Start>>,
 }
 
 impl Course {
@@ -54,9 +59,23 @@ impl Course {
         let mut sets: HashMap<(String, u64), FlexureParams> = HashMap::new();
         let mut adopted: HashMap<String, BTreeMap<u64, u64>> = HashMap::new();
         let mut processes: BTreeMap<String, Vec<u32>> = BTreeMap::new();
+        let main_imu = topic::main_imu().name;
+        let mut begin = None;
+        let mut starts: HashMap<String, Starts> = HashMap::new();
         for (topic, record) in files.by_ref() {
             *counts.entry(topic.clone()).or_default() += 1;
             match record {
+                Record::Pair(pair) => {
+                    starts.entry(topic).or_default().pair(pair.header.sequence);
+                }
+                Record::State(part) => {
+                    // the states are kept by the topic of the pairs that they are of
+                    let pairs = topic.strip_suffix("state").map(|area| format!("{area}pair")).unwrap_or(topic);
+                    starts.entry(pairs).or_default().part(&part);
+                }
+                Record::Sample(sample) if topic == main_imu => {
+                    begin.get_or_insert(sample.ordinal);
+                }
                 Record::Parameters(set) => {
                     sets.insert((topic, set.id), set);
                 }
@@ -73,16 +92,25 @@ impl Course {
             }
         }
         units(path, configuration, &counts)?;
-        let of_area = |area: &Area| {
+        // a recorder that somebody starts by hand does not know how much it has missed
+        let from_the_start = files.about().from_the_start && begin.is_none_or(|ordinal| ordinal == 0);
+        if from_the_start {
+            starts.clear();
+        }
+        let found = |area: &Area| starts.remove(&topic::pair(&area.name).name).and_then(Starts::finish);
+        let starts: Vec<Option<Start>> = configuration.areas.iter().map(found).collect();
+        let of_area = |(area, start): (&Area, &Option<Start>)| {
             let parameters = topic::parameters(&area.name).name;
             let adopted = adopted.remove(&adoption_topic(&area.name));
             if adopted.is_none() && !counts.contains_key(&parameters) {
                 return None;
             }
             let adopted = adopted.unwrap_or_default().into_iter();
-            adopted.map(|(number, id)| Some((number, *sets.get(&(parameters.clone(), id))?))).collect()
+            let adopted = adopted.map(|(number, id)| Some((number, *sets.get(&(parameters.clone(), id))?)));
+            // a set that came before the recording is in the state
+            if start.is_some() { Some(adopted.flatten().collect()) } else { adopted.collect() }
         };
-        let adoptions = configuration.areas.iter().map(of_area).collect();
+        let adoptions = configuration.areas.iter().zip(&starts).map(of_area).collect();
         let restarts = processes.into_iter().map(|(topic, seen)| (topic, seen.len() as u64 - 1));
         let ending = files.ending();
         Ok(Self {
@@ -94,6 +122,8 @@ impl Course {
             cuts: files.cuts().to_vec(),
             restarts: restarts.filter(|(_, n)| *n > 0).collect(),
             adoptions,
+            from_the_start,
+            starts,
         })
     }
 
@@ -103,11 +133,25 @@ impl Course {
         self.adoptions[area].clone()
     }
 
+    /// The state from which an area's estimator goes on; `None` if there is none, or the recording begins with the run.
+    pub fn start(&self, area: usize) -> Option<&Start> {
+        self.starts[area].as_ref()
+    }
+
+    /// Whether there is any.
+    pub fn has_starts(&self) -> bool {
+        self.starts.iter().any(Option::is_some)
+    }
+
     /// What a reader should know before believing that a replay is the run, a sentence each; nothing if all is well.
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
-        if !self.about.from_the_start {
-            remarks.push("begins in the middle of the run: a replay starts anew and gives other solutions".to_owned());
+        if self.has_starts() {
+            remarks.push("begins in the middle of the run: a replay starts from the states in it".to_owned());
+        } else if !self.from_the_start {
+            let without =
+                "begins in the middle of the run, without a state: a replay starts anew and gives other solutions";
+            remarks.push(without.to_owned());
         }
         for (path, reason) in &self.cuts {
             remarks.push(format!("is cut at the end of {} ({reason})", path.display()));

@@ -55,10 +55,10 @@ impl Files {
     /// Opens the file and those in which it goes on.
     ///
     /// # Errors
-    /// The file cannot be read or is no recorded run.
+    /// The file cannot be read or is no recorded run, or a file of the run is missing between two that are there.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let (reader, about) = open(path)?;
-        let (path, further) = (path.to_path_buf(), further(path));
+        let (path, further) = (path.to_path_buf(), further(path, about.run_id)?);
         Ok(Self { reader, about, path, further, ending: None, cuts: Vec::new(), unreadable: 0, recorded_ns: 0 })
     }
 
@@ -136,16 +136,22 @@ impl Iterator for Files {
 }
 
 /// The files in which a file goes on, by the number at the end of its name.
-fn further(path: &Path) -> VecDeque<PathBuf> {
-    let Some((stem, number)) = numbered(path) else { return VecDeque::new() };
-    (number + 1..)
-        .map(|number| path.with_file_name(format!("{stem}_{number:03}.mcap")))
-        .take_while(|p| p.exists())
-        .collect()
+fn further(path: &Path, run_id: u64) -> Result<VecDeque<PathBuf>, RecordingError> {
+    let Some((stem, own)) = numbered(path) else { return Ok(VecDeque::new()) };
+    let name = |number: u64| path.with_file_name(format!("{stem}_{number:03}.mcap"));
+    let files: VecDeque<PathBuf> = (own + 1..).map(name).take_while(|path| path.exists()).collect();
+    let missing = own + 1 + files.len() as u64;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let later = entries.filter(|path| numbered(path).is_some_and(|(of, number)| of == stem && number > missing));
+    match later.filter(|path| about(path).is_ok_and(|about| about.run_id == run_id)).min() {
+        Some(later) => Err(RecordingError::Hole { missing: name(missing), later }),
+        None => Ok(files),
+    }
 }
 
 /// The stem of a file's name and the number behind it.
-fn numbered(path: &Path) -> Option<(&str, u64)> {
+pub(super) fn numbered(path: &Path) -> Option<(&str, u64)> {
     let name = path.file_name()?.to_str()?.strip_suffix(".mcap")?;
     let (stem, number) = name.rsplit_once('_')?;
     Some((stem, number.parse().ok()?))

@@ -50,6 +50,14 @@ pub enum RecordingError {
         /// What it lacks.
         reason: String,
     },
+    /// A file of a recorded run is not there, though later ones are.
+    #[error("{}: this file of the run is missing, though {} is there", missing.display(), later.display())]
+    Hole {
+        /// The file that is missing.
+        missing: PathBuf,
+        /// One that comes after it.
+        later: PathBuf,
+    },
     /// The recorded run has no samples of a unit.
     #[error("{}: the recorded run has no samples of {topic}; it has {known}", path.display())]
     NoUnit {

@@ -3,7 +3,7 @@
 use crate::text::{MINIMAL, good, read};
 use pipeline::configuration::{Configuration, Line, Port, Source};
 use std::path::{Path, PathBuf};
-use wire::{Angle, Device, Rotation};
+use wire::{Angle, Device, Rotation, TimeSource};
 
 /// The smallest configuration with these two sources.
 fn with(main: &str, sub: &str) -> String {
@@ -32,8 +32,13 @@ fn devices_and_ports_can_be_told() {
     assert!(kvh.raw.is_some_and(|path: PathBuf| path.is_absolute() && path.ends_with("a.raw")));
     let stim = line("{ kind = \"stim300\", serial = \"/dev/ttyS1\", baud = 460800, accel_range_g = 30 }");
     assert_eq!(stim.device, Device::Stim300 { rotation: Rotation::Rate, force_exponent: 18 });
+    assert_eq!((stim.decimation, stim.latency_ns), (1, 0));
+    let told = "{ kind = \"stim300\", serial = \"/dev/ttyS1\", low_pass_hz = 131, latency_ms = 0.5, decimation = 20 }";
+    assert_eq!((line(told).decimation, line(told).latency_ns), (20, 4_200_000));
     let stdbin = line("{ kind = \"stdbin\", udp = \"[::1]:4\" }");
-    assert_eq!(stdbin.device, Device::Stdbin);
+    assert_eq!((stdbin.device, stdbin.time_source), (Device::Stdbin, TimeSource::Fitted));
+    let stdbin = line("{ kind = \"stdbin\", udp = \"[::1]:4\", clock = \"device\", clock_bound_ms = 0.5 }");
+    assert_eq!(stdbin.time_source, TimeSource::Device { bound_ns: 500_000 });
 }
 
 /// Of one line of the configuration, what is wrong with it.
@@ -61,6 +66,11 @@ fn what_does_not_go_together_is_told() {
             "{ kind = \"stim300\", udp = \"1.2.3.4:5\", accel_range_g = 7 }",
             "accel_range_g = 7: must be one of 5, 10, 30, 80",
         ),
+        ("{ kind = \"stim300\", udp = \"1.2.3.4:5\", low_pass_hz = 100 }", "must be one of 16, 33, 66, 131, 262"),
+        ("{ kind = \"kvh\", udp = \"1.2.3.4:5\", low_pass_hz = 66 }", "a source of kind \"kvh\" has no `low_pass_hz`"),
+        ("{ kind = \"kvh\", udp = \"1.2.3.4:5\", decimation = 0 }", "decimation = 0: must be within 1 to 1000"),
+        ("{ kind = \"kvh\", udp = \"1.2.3.4:5\", clock = \"device\" }", "a source of kind \"kvh\" tells no UTC"),
+        ("{ kind = \"stdbin\", udp = \"1.2.3.4:5\", clock_bound_ms = 1 }", "goes with clock = \"device\" only"),
         ("{ kind = \"kvh\", udp = \"1.2.3.4:5\", path = \"a\" }", "a source of kind \"kvh\" has no `path`"),
         ("{ kind = \"kvh\", udp = \"1.2.3.4:5\", latency_ms = -1 }", "must be within 0 to 1000"),
         ("{ kind = \"kvh\", udp = \"1.2.3.4:5\", serail = \"a\" }", "did you mean `serial`?"),

@@ -31,6 +31,18 @@ pub fn force_exponent(range_g: u16) -> Option<i32> {
     }
 }
 
+/// From what the gyros felt to the filtered sample, ns, with a low-pass filter of so many Hz.
+pub fn group_delay_ns(low_pass_hz: u16) -> Option<i64> {
+    match low_pass_hz {
+        262 => Some(2_200_000),
+        131 => Some(3_700_000),
+        66 => Some(6_700_000),
+        33 => Some(12_700_000),
+        16 => Some(24_700_000),
+        _ => None,
+    }
+}
+
 /// What a datagram holds beside the gyros.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Content {

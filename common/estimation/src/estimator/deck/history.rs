@@ -1,6 +1,7 @@
 //! What both units felt since the first pair, joined to the filter's intervals: what a filter with other parameters runs over again.
 
 use crate::matching::increment::Increment;
+use serde::{Deserialize, Serialize};
 
 /// The longest history, s. A later change of the flexure model has little to say about the first minutes.
 const LONGEST_S: f64 = 600.0;
@@ -8,7 +9,7 @@ const LONGEST_S: f64 = 600.0;
 const ROOM: usize = 6000;
 
 /// The increments of the epoch in which the filter started.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct History {
     steps: Vec<Increment>,
     joining: Option<Increment>,

@@ -8,6 +8,7 @@ mod history;
 mod origin;
 mod running;
 mod slow;
+mod state;
 mod surprise;
 
 use super::adoption::Adoption;
@@ -19,12 +20,14 @@ use crate::flexure::Hull;
 use crate::matching::View;
 use crate::matching::deck::Options;
 use crate::matching::increment::{Increment, Increments};
+use crate::state::{Frozen, StateError};
 use frames::{Main, Rot, Vec3, unit};
 use history::History;
 use messages::{Flags, FlexureParams, ImuPair, Solution};
 use nalgebra::{Matrix3, Vector3};
 use origin::Origin;
 use running::Running;
+use serde::{Deserialize, Serialize};
 use slow::Slow;
 
 /// While the filter runs, the registration by motion is worked out so often, ns.
@@ -110,6 +113,7 @@ pub struct DeckEstimator {
 }
 
 /// A filter that runs over the history.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 struct Shadow {
     running: Box<Running>,
     done: usize,
@@ -411,6 +415,15 @@ impl Estimator for DeckEstimator {
 
     fn resume(&mut self, last: &Solution) {
         self.last = Some(*last);
+    }
+
+    fn freeze(&self) -> Option<Frozen> {
+        self.frozen()
+    }
+
+    fn thaw(&mut self, state: &[u8]) -> Result<(), StateError> {
+        *self = self.thawed(state)?;
+        Ok(())
     }
 
     fn step(&mut self, pair: &ImuPair) -> Solution {

@@ -9,6 +9,7 @@ use crate::matching::so3::{self, So3, place};
 use frames::{Rot, Vec3, unit};
 use messages::{Flags, Solution};
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Registration by motion takes at least so long, s.
 const LEAST_REGISTRATION_S: f64 = 5.0;
@@ -23,7 +24,7 @@ const LARGEST_START: f64 = 0.005;
 const RESUMABLE_S: f64 = 600.0;
 
 /// Where a filter starts.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Origin {
     from: Registration,
     lag: Option<Lag>,

@@ -9,6 +9,7 @@ use crate::matching::increment::Increment;
 use crate::matching::{Matching, Observation};
 use frames::unit;
 use nalgebra::SMatrix;
+use serde::{Deserialize, Serialize};
 
 /// Beyond this standard deviation (rad) the constant is not worth keeping.
 const BROKEN: f64 = 0.1;
@@ -24,7 +25,7 @@ const LARGEST_SURPRISE: f64 = 3.0;
 const NOISE_HZ: f64 = 10.0;
 
 /// Model and covariance.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Running {
     /// The nominal state.
     pub deck: Deck,

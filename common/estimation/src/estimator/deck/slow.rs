@@ -17,6 +17,7 @@ use crate::matching::retiming::Together;
 use crate::matching::so3::{self, Covariance, Rows, So3, place};
 use frames::{Main, Rot, Vec3, unit};
 use nalgebra::{Matrix3, Vector3};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Length of a mean, s.
@@ -39,7 +40,7 @@ const REFUTING: f64 = 2.0;
 const REMEMBERED: f64 = 8.0;
 
 /// The slow filter.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Slow {
     so3: So3,
     p: Covariance,
@@ -52,7 +53,7 @@ pub struct Slow {
     surprise: Surprise,
 }
 
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Last {
     time_ns: i64,
     now: Together,
@@ -60,7 +61,7 @@ struct Last {
 }
 
 /// Weighted sums since the last propagation.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Block {
     weight: f64,
     residual: Vector3<f64>,

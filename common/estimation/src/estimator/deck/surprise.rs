@@ -1,7 +1,9 @@
 //! Whether the data agree with a filter: the normalised innovations squared over the last corrections.
 
+use serde::{Deserialize, Serialize};
+
 /// Mean of the squared innovations in terms of their variance.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Surprise {
     mean: f64,
     weight: f64,

@@ -33,6 +33,7 @@ use crate::align::Lag;
 use crate::flexure::Hull;
 use frames::{Main, Rot, Sub, Vec3};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use serde::{Deserialize, Serialize};
 use velocity::Scene;
 
 /// Size of the error state.
@@ -49,7 +50,7 @@ pub type ErrorState = SVector<f64, STATES>;
 type Rows = SMatrix<f64, 3, STATES>;
 
 /// What the model is told beside the units' figures.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Options {
     /// Accelerometers and lever arm; `None` to go by the gyros alone.
     pub lever: Option<Lever>,
@@ -58,7 +59,7 @@ pub struct Options {
 }
 
 /// The nominal state of one area.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Deck {
     options: Options,
     grade: Grade,

@@ -5,6 +5,7 @@ use crate::matching::Accel;
 use crate::matching::increment::{Increment, Velocities};
 use frames::{Main, MainStart, Rot, Sub, SubStart, Vec3, unit};
 use nalgebra::{Matrix3, SMatrix, Vector3};
+use serde::{Deserialize, Serialize};
 
 /// Noise of the comparison: coning and sculling of single samples, m/s. From 1 to 30 mm/s the results are the same.
 const SIGMA: f64 = 3e-3;
@@ -18,7 +19,7 @@ const LEAST_TRIAD: f64 = 5.0 * unit::ARCSEC;
 const GAIN: (f64, f64) = (0.5, 0.5);
 
 /// What is known of accelerometers and lever arm.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Lever {
     /// Figures of both units' accelerometers.
     pub accel: Accel,
@@ -29,7 +30,7 @@ pub struct Lever {
 }
 
 /// The nominal state.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Velocity {
     lever: Lever,
     /// Whether `u` has started.
@@ -51,7 +52,7 @@ pub struct Velocity {
 }
 
 /// What has come in since the last propagation.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 struct Since {
     time_s: f64,
     /// With spikes, s.
