@@ -132,3 +132,57 @@ fn open(port: &Port) -> io::Result<Open> {
         Port::File(_) => Err(io::Error::new(ErrorKind::Unsupported, "it is a file, and no port")),
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+    use std::net::TcpListener;
+    use std::time::Instant;
+
+    /// Reads until there are so many bytes.
+    fn next(line: &mut Line, count: usize) -> Vec<u8> {
+        let (mut all, mut piece, begin) = (Vec::new(), [0; 64], Instant::now());
+        while all.len() < count && begin.elapsed() < Duration::from_secs(20) {
+            let read = line.read(&mut piece);
+            all.extend_from_slice(&piece[..read]);
+        }
+        all
+    }
+
+    #[test]
+    fn a_server_that_hangs_up_is_called_again() {
+        let server = TcpListener::bind("127.0.0.1:0").unwrap();
+        let address = server.local_addr().unwrap();
+        let mut line = Line::new(Port::Tcp(address.to_string()));
+        for (call, words) in [b"one, in two pieces".as_slice(), b"two"].into_iter().enumerate() {
+            let words = words.to_owned();
+            let server = server.try_clone().unwrap();
+            let speaker = std::thread::spawn({
+                let words = words.clone();
+                move || {
+                    let (mut stream, _) = server.accept().unwrap();
+                    let (first, second) = words.split_at(words.len() / 2);
+                    stream.write_all(first).unwrap();
+                    std::thread::sleep(WAIT / 2);
+                    stream.write_all(second).unwrap();
+                }
+            });
+            assert_eq!(next(&mut line, words.len()), words);
+            assert_eq!((line.opened(), line.fault().is_none()), (call as u64 + 1, true));
+            speaker.join().unwrap();
+        }
+        drop(server);
+        assert_eq!(next_fault(&mut line), (2, true), "nobody answers any more");
+    }
+
+    /// How often the line was opened when it has a fault.
+    fn next_fault(line: &mut Line) -> (u64, bool) {
+        let begin = Instant::now();
+        while line.fault().is_none() && begin.elapsed() < Duration::from_secs(20) {
+            line.read(&mut [0; 64]);
+        }
+        (line.opened(), line.fault().is_some())
+    }
+}
