@@ -50,7 +50,7 @@ pub struct Experiment {
 }
 
 /// All of them, in the order of their output.
-pub const EXPERIMENTS: [Experiment; 10] = [
+pub const EXPERIMENTS: [Experiment; 11] = [
     paper("idam", idam::TITLE, idam::studies),
     paper("q-nnkf", q_nnkf::TITLE, q_nnkf::studies),
     paper("model-free", model_free::TITLE, model_free::studies),
@@ -60,6 +60,7 @@ pub const EXPERIMENTS: [Experiment; 10] = [
     own("deck-unseen", deck::UNSEEN_TITLE, deck::unseen),
     own("deck-troubles", deck::TROUBLES_TITLE, deck::troubles),
     own("deck-coupling", deck::COUPLING_TITLE, deck::coupling),
+    own("deck-month", deck::MONTH_TITLE, deck::month),
     own("deck-parts", deck::PARTS_TITLE, deck::parts),
 ];
 

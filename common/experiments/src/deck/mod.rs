@@ -11,6 +11,7 @@ mod honesty;
 mod matrix;
 mod measure;
 mod method;
+mod month;
 mod paired;
 mod scenario;
 mod spikes;
@@ -24,6 +25,7 @@ pub(crate) const SCENARIOS_TITLE: &str = "The project's own estimator: every pap
 pub(crate) const UNSEEN_TITLE: &str = "The project's own estimator: motion that does not show the installation";
 pub(crate) const TROUBLES_TITLE: &str = "The project's own estimator: what goes wrong on a ship";
 pub(crate) const COUPLING_TITLE: &str = "The project's own estimator: flexure in step with the ship";
+pub(crate) const MONTH_TITLE: &str = "The project's own estimator: a month at sea";
 pub(crate) const PARTS_TITLE: &str = "The project's own estimator: what each part is good for";
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -35,6 +37,7 @@ pub(crate) fn scenarios() -> Vec<Study> {
 
 pub(crate) use ablation::studies as parts;
 pub(crate) use coupled::studies as coupling;
+pub(crate) use month::studies as month;
 pub(crate) use troubles::studies as troubles;
 pub(crate) use unseen::studies as unseen;
 
