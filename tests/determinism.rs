@@ -84,10 +84,14 @@ fn a_zero_turns_the_solutions_and_nothing_else() {
     assert!(valid > 1000 && without.sets.len() > 3, "{valid} valid, {} sets", without.sets.len());
     for (a, b) in without.sets.iter().zip(&with.sets) {
         for axis in 0..3 {
-            assert!((a.b[axis] / b.b[axis] - 1.0).abs() < 1e-6 && (a.sigma[axis] / b.sigma[axis] - 1.0).abs() < 1e-6);
+            let off = [a.b[axis] / b.b[axis] - 1.0, a.sigma[axis] / b.sigma[axis] - 1.0].map(f64::abs);
+            assert!(off.into_iter().all(|off| off < SEARCHED), "{off:?} of set {}", a.id);
         }
     }
 }
+
+/// The search for a flexure ends with a step of this size (relative), and rounding may end it a step earlier or later.
+const SEARCHED: f64 = 1e-5;
 
 #[derive(Default)]
 struct Seen {
