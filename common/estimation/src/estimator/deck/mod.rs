@@ -6,12 +6,12 @@
 
 mod history;
 mod origin;
+mod replay;
 mod running;
 mod slow;
 mod state;
 mod surprise;
 
-use super::adoption::Adoption;
 use super::{Settings, attitude_of_deck, row_major};
 use crate::Estimator;
 use crate::align::{DelayRegistrar, Register, Registrar, Registration};
@@ -19,16 +19,15 @@ use crate::evaluate::{Evaluate, Evidence, NORMAL_95};
 use crate::flexure::Hull;
 use crate::matching::View;
 use crate::matching::deck::Options;
-use crate::matching::increment::{Increment, Increments};
+use crate::matching::increment::Increment;
 use crate::state::{Frozen, StateError};
 use frames::{Main, Rot, Vec3, unit};
-use history::History;
 use messages::{Flags, FlexureParams, ImuPair, Solution};
 use nalgebra::{Matrix3, Vector3};
 use origin::Origin;
 use running::Running;
-use serde::{Deserialize, Serialize};
 use slow::Slow;
+use state::State;
 
 /// While the filter runs, the registration by motion is worked out so often, ns.
 const REGISTER_AGAIN_NS: i64 = 10_000_000_000;
@@ -36,14 +35,6 @@ const REGISTER_AGAIN_NS: i64 = 10_000_000_000;
 const LOST: f64 = 1.0;
 /// No hull bends more than this (3 degrees, rad); what an identifier takes for more is a coarse unit's error.
 const LARGEST_FLEXURE: f64 = 0.05;
-/// So many increments of the history are run over at each pair.
-const AT_ONCE: usize = 5;
-/// The history is run over again when it has grown by this factor.
-const GROWN: f64 = 1.2;
-/// A window that begins so long after the first solution does not speak of the first minutes, s.
-const LATEST_WINDOW_S: f64 = 10.0;
-/// By how much more than a step the range is widened before it.
-const MARGIN: f64 = 1.2;
 /// The slow filter starts so long after the fast one, s: how large the slow part of the flexure is, no shorter window tells. From the first two minutes
 /// on it put 100 arcsec into the demonstration.
 const SLOW_FROM_S: f64 = 600.0;
@@ -82,102 +73,51 @@ impl DeckSettings {
 pub struct DeckEstimator {
     settings: DeckSettings,
     evaluation: Box<dyn Evaluate>,
-    epoch: Option<u64>,
-    increments: Increments,
-    history: History,
-    /// Goes on collecting when the filter runs: what the motion alone says of the installation.
-    registrar: Registrar,
+    /// Until a filter starts.
     delays: Option<DelayRegistrar>,
-    since_ns: Option<i64>,
-    registered: Option<Registration>,
-    registered_ns: i64,
-    origin: Option<Origin>,
     /// What an estimator that is gone said last.
     last: Option<Solution>,
-    live: Option<Box<Running>>,
-    /// What the slow motion alone shows; only where the range reckons with what the waves hide.
-    slow: Option<Box<Slow>>,
-    shadow: Option<Shadow>,
-    /// Length of the history from which on it is worth running over again, s.
-    again_s: f64,
-    /// When the first filter went live, ns.
-    started_ns: i64,
-    /// The range last published, and what it must not be less than before a step, rad.
-    range: [f64; 3],
-    announced: [f64; 3],
-    adoption: Adoption,
-    /// The parameters with which the history was last run over.
-    replayed_id: u64,
-    /// Flags that the next solution carries.
-    news: Flags,
-}
-
-/// A filter that runs over the history.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-struct Shadow {
-    running: Box<Running>,
-    done: usize,
+    state: State,
 }
 
 impl DeckEstimator {
     /// An estimator that has seen nothing yet.
     pub fn new(settings: DeckSettings, evaluation: Box<dyn Evaluate>) -> Self {
-        Self {
-            settings,
-            evaluation,
-            epoch: None,
-            increments: Increments::default(),
-            history: History::new(settings.period_s()),
-            registrar: Registrar::new(settings.area.grade.scale_variance()),
-            delays: settings.has_delay().then(DelayRegistrar::new),
-            since_ns: None,
-            registered: None,
-            registered_ns: i64::MIN,
-            origin: None,
-            last: None,
-            live: None,
-            slow: None,
-            shadow: None,
-            again_s: 0.0,
-            started_ns: i64::MAX,
-            range: [0.0; 3],
-            announced: [0.0; 3],
-            adoption: Adoption::new(),
-            replayed_id: 0,
-            news: Flags::empty(),
-        }
+        let (delays, state) = (settings.has_delay().then(DelayRegistrar::new), State::new(&settings));
+        Self { settings, evaluation, delays, last: None, state }
     }
 
     /// Starts anew, with nothing but the parameters in force.
     fn reset(&mut self) {
-        self.registrar = Registrar::new(self.settings.area.grade.scale_variance());
+        self.state.registrar = Registrar::new(self.settings.area.grade.scale_variance());
         self.delays = self.settings.has_delay().then(DelayRegistrar::new);
-        self.history.end();
-        (self.since_ns, self.origin, self.live, self.shadow, self.slow) = (None, None, None, None, None);
-        self.epoch = None;
-        self.news |= Flags::RESET;
+        self.state.history.end();
+        (self.state.since_ns, self.state.origin, self.state.live, self.state.shadow, self.state.slow) =
+            (None, None, None, None, None);
+        self.state.epoch = None;
+        self.state.news |= Flags::RESET;
     }
 
     /// The flexure model in force, or the one that a start by motion guesses.
     fn hull(&self, origin: &Origin) -> Hull {
-        let adopted = self.adoption.hull().map(|hull| self.settings.bounded(hull));
+        let adopted = self.state.adoption.hull().map(|hull| self.settings.bounded(hull));
         adopted.or(self.settings.area.hull).unwrap_or(origin.guess())
     }
 
     /// The attitudes start anew with a pair.
     fn enter_epoch(&mut self, pair: &ImuPair) {
-        self.epoch = Some(pair.epoch);
-        self.increments.restart();
-        self.shadow = None;
-        if let Some(slow) = &mut self.slow {
+        self.state.epoch = Some(pair.epoch);
+        self.state.increments.restart();
+        self.state.shadow = None;
+        if let Some(slow) = &mut self.state.slow {
             slow.leave_epoch();
         }
-        if let Some(live) = &mut self.live {
+        if let Some(live) = &mut self.state.live {
             live.leave_epoch();
-            self.history.end();
+            self.state.history.end();
         } else {
-            self.history.restart(pair.header.time_ns);
-            if self.origin.is_some() {
+            self.state.history.restart(pair.header.time_ns);
+            if self.state.origin.is_some() {
                 self.run_again();
             }
         }
@@ -188,26 +128,27 @@ impl DeckEstimator {
         if self.evaluation.hidden().is_none() {
             return;
         }
-        let since_s = unit::seconds(time_ns.saturating_sub(self.started_ns));
-        let (Some(live), Some(origin), Some(felt)) = (&self.live, &self.origin, felt.filter(|_| since_s > SLOW_FROM_S))
+        let since_s = unit::seconds(time_ns.saturating_sub(self.state.started_ns));
+        let (Some(live), Some(origin), Some(felt)) =
+            (&self.state.live, &self.state.origin, felt.filter(|_| since_s > SLOW_FROM_S))
         else {
             return;
         };
         let Some(now) = live.deck.together().filter(|_| !live.is_coasting()) else { return };
         let hull = self.hull(origin);
         let new = || Box::new(Slow::new(&self.settings, live.deck.so3(), hull));
-        let mut slow = self.slow.take().unwrap_or_else(new);
+        let mut slow = self.state.slow.take().unwrap_or_else(new);
         slow.set_flexure(hull);
         let Some(complete) = slow.step(time_ns, now, felt.disturbance) else { return };
         if complete {
             *slow = slow.revised(&self.settings, live.deck.so3());
         }
-        self.slow = Some(slow);
+        self.state.slow = Some(slow);
     }
 
     /// By how much the covariance is too small for what the data say; 1 where they do not contradict.
     fn excess(&self, live: &Running) -> f64 {
-        live.surprise().excess().max(self.slow.as_ref().map_or(1.0, |slow| slow.excess()))
+        live.surprise().excess().max(self.state.slow.as_ref().map_or(1.0, |slow| slow.excess()))
     }
 
     /// By how much the deformation is turned by what the slow motion shows and the waves hide, and the half width of its range; `None` where the range
@@ -215,7 +156,7 @@ impl DeckEstimator {
     fn corrected(&self, live: &Running, own: &Matrix3<f64>) -> Option<(Rot<Main, Main>, [f64; 3])> {
         let hidden = self.evaluation.hidden()?;
         let known = own + Matrix3::from_diagonal(&hidden.component_mul(&hidden));
-        let (turn, covariance) = self.slow.as_ref()?.correct(live.deck.so3(), live.deck.together()?, &known)?;
+        let (turn, covariance) = self.state.slow.as_ref()?.correct(live.deck.so3(), live.deck.together()?, &known)?;
         let triad = self.settings.area.grade.triad_variance();
         Some((turn, covariance.diagonal().map(|variance| NORMAL_95 * (variance + triad).sqrt()).into()))
     }
@@ -223,16 +164,17 @@ impl DeckEstimator {
     /// Collects motion until it shows the installation; then a filter starts.
     fn register(&mut self, pair: &ImuPair) {
         let time_ns = pair.header.time_ns;
-        self.registrar.add(pair);
-        let since_ns = *self.since_ns.get_or_insert(time_ns);
+        self.state.registrar.add(pair);
+        let since_ns = *self.state.since_ns.get_or_insert(time_ns);
         let waited_s = unit::seconds(time_ns - since_ns);
         if let Some(delays) = self.delays.as_mut().filter(|_| waited_s < DELAY_DATA_S) {
             delays.add(pair);
         }
-        if self.origin.is_some() {
-            if time_ns - self.registered_ns >= REGISTER_AGAIN_NS {
-                self.registered = self.registrar.solve().filter(Registration::is_observable).or(self.registered);
-                self.registered_ns = time_ns;
+        if self.state.origin.is_some() {
+            if time_ns - self.state.registered_ns >= REGISTER_AGAIN_NS {
+                self.state.registered =
+                    self.state.registrar.solve().filter(Registration::is_observable).or(self.state.registered);
+                self.state.registered_ns = time_ns;
             }
             return;
         }
@@ -242,110 +184,34 @@ impl DeckEstimator {
         if let Some(origin) = self.last.take().and_then(|last| Origin::resumed(&self.settings, &last, time_ns)) {
             return self.start(origin, time_ns);
         }
-        match Origin::find(&self.settings, &self.registrar, self.delays.as_ref(), waited_s) {
+        match Origin::find(&self.settings, &self.state.registrar, self.delays.as_ref(), waited_s) {
             origin::Found::Nothing => {}
-            origin::Found::Unobservable => self.news |= Flags::UNOBSERVABLE,
+            origin::Found::Unobservable => self.state.news |= Flags::UNOBSERVABLE,
             origin::Found::Start(origin) => self.start(*origin, time_ns),
         }
     }
 
     /// A first filter starts.
     fn start(&mut self, origin: Origin, time_ns: i64) {
-        (self.registered, self.registered_ns) = (origin.by_motion, time_ns);
-        self.origin = Some(origin);
+        (self.state.registered, self.state.registered_ns) = (origin.by_motion, time_ns);
+        self.state.origin = Some(origin);
         self.delays = None;
         if !self.settings.replay {
-            self.history.restart(time_ns);
+            self.state.history.restart(time_ns);
         }
         self.run_again();
-    }
-
-    /// A filter starts at the beginning of the history, with the parameters in force.
-    fn run_again(&mut self) {
-        let Some(origin) = &self.origin else { return };
-        let hull = self.hull(origin);
-        let running =
-            Running::new(origin.begin(&self.settings, hull), self.history.begin_ns(), self.settings.period_s());
-        if self.settings.replay {
-            self.shadow = Some(Shadow { running: Box::new(running), done: 0 });
-        } else {
-            self.history.end();
-            self.live = Some(Box::new(running));
-        }
-        self.replayed_id = self.adoption.id();
-        self.announced = [0.0; 3];
-        self.again_s = self.history.length_s() * GROWN;
-    }
-
-    /// Whether the parameters in force speak of the end of the history only, the flexure having become another one.
-    fn is_of_another_flexure(&self) -> bool {
-        let begin_ns = self.adoption.window_begin_ns().unwrap_or(i64::MIN);
-        let since_start_s = unit::seconds(begin_ns.saturating_sub(self.started_ns));
-        self.live.is_some() && since_start_s > LATEST_WINDOW_S
-    }
-
-    /// Lets the second filter catch up; where it has, it takes over. `at_end` says that the live filter stands at the end of the history.
-    fn catch_up(&mut self, at_end: bool) {
-        let news = self.adoption.id() != self.replayed_id && self.history.length_s() >= self.again_s;
-        if news && self.live.is_some() && self.shadow.is_none() && self.history.is_complete() {
-            self.run_again();
-        }
-        if self.is_of_another_flexure() {
-            self.history.end();
-        }
-        let Some(shadow) = &mut self.shadow else { return };
-        if !self.history.is_complete() && self.live.is_some() {
-            self.shadow = None;
-            return;
-        }
-        let steps = self.history.steps();
-        for step in steps.iter().skip(shadow.done).take(AT_ONCE) {
-            shadow.done += 1;
-            if shadow.running.step(step.time_ns, Some(step), &self.settings).is_none() {
-                self.shadow = None;
-                if self.live.is_none() {
-                    self.reset();
-                }
-                return;
-            }
-        }
-        if at_end && shadow.done == steps.len() && !steps.is_empty() {
-            self.take_over();
-        }
-    }
-
-    /// The second filter, which has caught up, becomes the live one, unless its data disagree with it. Where the step is larger than the range that
-    /// is published, the range is widened first, and the step comes with the next interval.
-    fn take_over(&mut self) {
-        let (Some(shadow), Some(live)) = (&self.shadow, &self.live) else {
-            self.live = self.shadow.take().map(|shadow| shadow.running);
-            self.started_ns = self.live.as_ref().map_or(i64::MAX, |live| live.last_ns());
-            return;
-        };
-        if !shadow.running.surprise().is_small() {
-            self.shadow = None;
-            return;
-        }
-        let total = |running: &Running| running.deck.view(running.is_coasting()).deformation;
-        let step = (total(&shadow.running) * total(live).inverse()).log().array().map(f64::abs);
-        let covered = step.iter().zip(&self.range).all(|(step, range)| step <= range);
-        if covered {
-            self.live = self.shadow.take().map(|shadow| shadow.running);
-        } else {
-            self.announced = step.map(|step| step * MARGIN);
-        }
     }
 
     fn publish(&mut self, pair: &ImuPair, flags: Flags) -> Solution {
         let mut solution = Solution {
             header: pair.header,
-            params_id: self.adoption.id(),
+            params_id: self.state.adoption.id(),
             epoch: pair.epoch,
             area: self.settings.area.area,
             flags,
             ..Solution::default()
         };
-        let Some(running) = &self.live else { return solution };
+        let Some(running) = &self.state.live else { return solution };
         let p = &running.p;
         let coasting = running.is_coasting();
         let View { deformation, rows, noise, static_part, static_rows, rate, rate_rows, drift, delay, skew } =
@@ -376,7 +242,7 @@ impl DeckEstimator {
         let estimate = |state: Option<(f64, usize)>| state.map_or((0.0, 0.0), |(x, i)| (x, p[(i, i)].sqrt()));
         (solution.delay, solution.delay_sigma) = estimate(delay);
         (solution.skew, solution.skew_sigma) = estimate(skew);
-        if let Some(registered) = &self.registered {
+        if let Some(registered) = &self.state.registered {
             solution.registered = registered.rotation.quaternion();
             solution.registered_sigma = registered.covariance.diagonal().map(f64::sqrt).into();
         }
@@ -392,9 +258,9 @@ impl DeckEstimator {
             rate_with_static: rate_rows * p * static_rows.transpose(),
         });
         let range = seen.unwrap_or(range);
-        let announced = if self.shadow.is_some() { self.announced } else { [0.0; 3] };
+        let announced = if self.state.shadow.is_some() { self.state.announced } else { [0.0; 3] };
         solution.range = std::array::from_fn(|axis| range[axis].max(announced[axis]));
-        self.range = solution.range;
+        self.state.range = solution.range;
         solution.valid = u32::from(!coasting && covariance.diagonal().max() < LOST);
         // what the waves may hide is hidden in the deck's attitude too
         let hidden = self.evaluation.hidden().map_or(Matrix3::zeros(), |_| {
@@ -408,8 +274,8 @@ impl DeckEstimator {
 
 impl Estimator for DeckEstimator {
     fn offer(&mut self, params: FlexureParams) {
-        if self.adoption.offer(params) {
-            self.news |= Flags::LATE;
+        if self.state.adoption.offer(params) {
+            self.state.news |= Flags::LATE;
         }
     }
 
@@ -427,17 +293,18 @@ impl Estimator for DeckEstimator {
     }
 
     fn step(&mut self, pair: &ImuPair) -> Solution {
-        self.adoption.advance(pair.header.time_ns);
+        self.state.adoption.advance(pair.header.time_ns);
         let is_gap = pair.flags.contains(Flags::GAP);
-        if !is_gap && self.epoch != Some(pair.epoch) {
+        if !is_gap && self.state.epoch != Some(pair.epoch) {
             self.enter_epoch(pair);
         }
-        let felt = if is_gap { None } else { self.increments.next(pair) };
-        let at_end = felt.is_some_and(|step| self.history.take(&step));
-        if let (Some(hull), Some(live)) = (self.adoption.hull(), &mut self.live) {
+        let felt = if is_gap { None } else { self.state.increments.next(pair) };
+        let at_end = felt.is_some_and(|step| self.state.history.take(&step));
+        if let (Some(hull), Some(live)) = (self.state.adoption.hull(), &mut self.state.live) {
             live.set_flexure(self.settings.bounded(hull));
         }
         let lost = self
+            .state
             .live
             .as_mut()
             .is_some_and(|live| live.step(pair.header.time_ns, felt.as_ref(), &self.settings).is_none());
@@ -449,12 +316,12 @@ impl Estimator for DeckEstimator {
         self.catch_up(at_end);
 
         let mut flags = pair.flags;
-        if self.adoption.id() == 0 && self.settings.area.hull.is_none() {
+        if self.state.adoption.id() == 0 && self.settings.area.hull.is_none() {
             flags |= Flags::PRIOR;
         }
-        flags |= std::mem::take(&mut self.news);
-        flags |= self.origin.as_ref().map_or(Flags::empty(), |origin| origin.flags);
-        flags |= match &self.live {
+        flags |= std::mem::take(&mut self.state.news);
+        flags |= self.state.origin.as_ref().map_or(Flags::empty(), |origin| origin.flags);
+        flags |= match &self.state.live {
             None => Flags::REGISTERING,
             Some(live) if live.is_coasting() => Flags::COASTING,
             Some(live) if self.excess(live) > 1.0 => Flags::INCONSISTENT,
