@@ -4,7 +4,7 @@
 //! the level of the noise is unknown too if there is any. It is the "bound" beside paper 003's Table IV.
 
 use super::axis::sigma_variance;
-use super::periodogram::{density, gain};
+use super::periodogram::{gain, slopes};
 use super::series::{Kind, Series};
 use crate::flexure::Flexure;
 use nalgebra::{Matrix3, Matrix4, RowVector3, Vector4};
@@ -59,8 +59,8 @@ impl Bound {
         let mut line = first;
         while line <= last {
             let w = TAU * line / length_s;
-            let (flexible, slopes) = density(flexure, gain(band.kind, band.step_s, w), band.step_s, w);
-            let gradient = Vector4::new(slopes[0], slopes[1], slopes[2], noise) / (flexible + noise);
+            let [by_mu, by_b, flexible] = slopes(flexure, gain(band.kind, band.step_s, w), band.step_s, w);
+            let gradient = Vector4::new(by_mu, by_b, flexible, noise) / (flexible + noise);
             information += gradient * gradient.transpose();
             line += 1.0;
         }

@@ -33,7 +33,9 @@ pub struct Periodogram {
     pub frequencies: Vec<f64>,
     /// Two-sided density of the series, its square times s.
     pub power: Vec<f64>,
-    /// How many independent values one of them is worth: a taper makes neighbours alike.
+    /// How many lines one of them is the mean of.
+    pub counts: Vec<f64>,
+    /// How many independent values a line is worth: a taper makes neighbours alike.
     pub weight: f64,
 }
 
@@ -55,10 +57,28 @@ impl Periodogram {
         let frequencies = bins.iter().map(|&k| TAU * k as f64 * resolution).collect();
         let finite = power.iter().all(|p| p.is_finite());
         (bins.len() >= 8 && finite).then(|| Self {
+            counts: vec![1.0; bins.len()],
             frequencies,
             power,
             weight: squares * squares / (count as f64 * fourths),
         })
+    }
+
+    /// The same with the means of neighbours where those are closer together than a `share` of their frequency.
+    pub fn merged(&self, share: f64) -> Self {
+        let mut merged = Self { frequencies: Vec::new(), power: Vec::new(), counts: Vec::new(), weight: self.weight };
+        let mut begin = 0;
+        for end in 1..=self.frequencies.len() {
+            let wide = self.frequencies.get(end).is_none_or(|w| w - self.frequencies[begin] > share * w);
+            if wide {
+                let count = (end - begin) as f64;
+                merged.frequencies.push(self.frequencies[begin..end].iter().sum::<f64>() / count);
+                merged.power.push(self.power[begin..end].iter().sum::<f64>() / count);
+                merged.counts.push(count);
+                begin = end;
+            }
+        }
+        merged
     }
 }
 
@@ -73,19 +93,29 @@ pub fn gain(kind: Kind, step_s: f64, w: f64) -> f64 {
     }
 }
 
-/// Density of a sampled series without noise at the angular frequency `w` with its [`gain`], and its derivatives in `ln mu`, `ln b`, `ln Q`.
-pub fn density(model: &Flexure, gain: f64, step_s: f64, w: f64) -> (f64, [f64; 3]) {
-    let (b2, mu2) = (model.b * model.b, model.mu * model.mu);
-    let (mut sum, mut by_mu, mut by_b) = (0.0, 0.0, 0.0);
-    for fold in -FOLDS..=FOLDS {
-        let f = w + TAU * f64::from(fold) / step_s;
+/// What a mode has at `w` and in each band that is folded into it: `b^2 - f^2`, `4 mu^2 f^2`, and one over the sum of the first's square and the second.
+fn folded(model: &Flexure, step_s: f64, w: f64) -> impl Iterator<Item = (f64, f64, f64)> {
+    let (b2, mu2, sampling) = (model.b * model.b, model.mu * model.mu, TAU / step_s);
+    (-FOLDS..=FOLDS).map(move |fold| {
+        let f = w + sampling * f64::from(fold);
         let away = b2 - f * f;
         let damped = 4.0 * mu2 * f * f;
-        let bottom = away * away + damped;
-        sum += 1.0 / bottom;
-        by_mu -= 2.0 * damped / (bottom * bottom);
-        by_b -= 4.0 * b2 * away / (bottom * bottom);
-    }
+        (away, damped, 1.0 / (away * away + damped))
+    })
+}
+
+/// Density of a sampled series without noise at the angular frequency `w` with its [`gain`].
+pub fn density(model: &Flexure, gain: f64, step_s: f64, w: f64) -> f64 {
+    gain * model.density() * folded(model, step_s, w).map(|(_, _, inverse)| inverse).sum::<f64>()
+}
+
+/// Derivatives of [`density`] in `ln mu`, `ln b`, `ln Q`; the last is the density itself.
+pub fn slopes(model: &Flexure, gain: f64, step_s: f64, w: f64) -> [f64; 3] {
+    let b2 = model.b * model.b;
+    let [by_mu, by_b, sum] = folded(model, step_s, w).fold([0.0; 3], |[by_mu, by_b, sum], (away, damped, inverse)| {
+        let squared = inverse * inverse;
+        [by_mu - 2.0 * damped * squared, by_b - 4.0 * b2 * away * squared, sum + inverse]
+    });
     let size = gain * model.density();
-    (size * sum, [size * by_mu, size * by_b, size * sum])
+    [size * by_mu, size * by_b, size * sum]
 }

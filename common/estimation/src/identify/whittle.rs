@@ -14,7 +14,7 @@
 
 use super::axis::Identified;
 use super::bound::Band;
-use super::periodogram::{Periodogram, Taper, density, gain};
+use super::periodogram::{Periodogram, Taper, density, gain, slopes};
 use super::refinement::{DAMPING, FREQUENCY, MEDIANS, PRIOR_SD};
 use super::series::{Kind, Series};
 use crate::flexure::Flexure;
@@ -68,6 +68,9 @@ const SECOND_DECISIVE: f64 = 30.0;
 /// some ten normal variables. Where there is a second mode the sum goes into hundreds.
 const WORTH_A_LOOK: f64 = 20.0;
 
+/// Which start leads to the best model is tried with lines merged over this share of their frequency: a sixth of them for ten minutes of rates.
+const COARSE: f64 = 0.03;
+
 /// The logarithms of damping, natural frequency and density of each mode, and of the noise.
 type Logs<const N: usize> = SVector<f64, N>;
 
@@ -119,6 +122,7 @@ struct Fit {
     data: Periodogram,
     /// What the series shows of an angle's density, frequency by frequency.
     gains: Vec<f64>,
+    kind: Kind,
     step_s: f64,
     settings: Settings,
     /// Whether damping and frequency stay where they are.
@@ -136,27 +140,38 @@ fn modes<const N: usize>(logs: &Logs<N>) -> impl Iterator<Item = Flexure> + '_ {
 impl Fit {
     fn new(series: &Series, settings: &Settings) -> Option<Self> {
         let data = Periodogram::new(series, settings.taper, settings.band_hz)?;
-        let gains = data.frequencies.iter().map(|w| gain(series.kind, series.step_s, *w)).collect();
-        Some(Self { data, gains, step_s: series.step_s, settings: *settings, held: false })
+        Some(Self::of(data, series.kind, series.step_s, settings))
     }
 
-    /// Frequency (rad/s), gain and power of each line.
-    fn lines(&self) -> impl Iterator<Item = (f64, f64, f64)> + '_ {
-        let Periodogram { frequencies, power, .. } = &self.data;
-        frequencies.iter().zip(&self.gains).zip(power).map(|((w, gain), power)| (*w, *gain, *power))
+    fn of(data: Periodogram, kind: Kind, step_s: f64, settings: &Settings) -> Self {
+        let gains = data.frequencies.iter().map(|w| gain(kind, step_s, *w)).collect();
+        Self { data, gains, kind, step_s, settings: *settings, held: false }
     }
 
-    /// The best logarithms from all starts, and their cost.
+    /// Frequency (rad/s), gain, power and count of lines.
+    fn lines(&self) -> impl Iterator<Item = (f64, f64, f64, f64)> + '_ {
+        let Periodogram { frequencies, power, counts, .. } = &self.data;
+        let lines = frequencies.iter().zip(&self.gains).zip(power).zip(counts);
+        lines.map(|(((w, gain), power), count)| (*w, *gain, *power, *count))
+    }
+
+    /// The best logarithms from some starts, and their cost. Which start leads there, fewer lines tell as well.
+    fn best_of<const N: usize>(&self, starts: impl Iterator<Item = Logs<N>>) -> Option<(Logs<N>, f64)> {
+        let coarse = Self::of(self.data.merged(COARSE), self.kind, self.step_s, &self.settings);
+        let found = starts.filter_map(|start| coarse.climb(start));
+        let (logs, _) = found.min_by(|one, other| one.1.total_cmp(&other.1))?;
+        self.climb(logs)
+    }
+
+    /// The best logarithms of one mode, and their cost.
     fn best(&self) -> Option<(Logs<ONE>, f64)> {
-        let starts = STARTS.into_iter().chain(self.peak());
-        let found = starts.filter_map(|(mu, b)| self.climb(self.start(mu, b)));
-        found.min_by(|one, other| one.1.total_cmp(&other.1))
+        self.best_of(STARTS.into_iter().chain(self.peak()).map(|(mu, b)| self.start(mu, b)))
     }
 
     /// Mean power of the tenth of the highest frequencies.
     fn floor(&self) -> f64 {
         let count = self.data.power.len();
-        let highest = &self.data.power[count - (count / 10).max(4)..];
+        let highest = &self.data.power[count.saturating_sub((count / 10).max(4))..];
         (highest.iter().sum::<f64>() / highest.len() as f64).max(f64::MIN_POSITIVE)
     }
 
@@ -176,7 +191,7 @@ impl Fit {
 
     /// The power of a mode over all lines.
     fn power(&self, mode: &Flexure) -> f64 {
-        self.lines().map(|(w, gain, _)| density(mode, gain, self.step_s, w).0).sum()
+        self.lines().map(|(w, gain, _, count)| count * density(mode, gain, self.step_s, w)).sum()
     }
 
     /// The best logarithms with a second mode beside the one found, and their cost.
@@ -187,8 +202,7 @@ impl Fit {
             let density = unit.density() * SECOND_SHARE * total / self.power(&unit);
             Logs::from([one[0], one[1], one[2], unit.mu.ln(), unit.b.ln(), density.ln(), one[3]])
         };
-        let found = SECOND_STARTS.into_iter().filter_map(|b| self.climb(start(b)));
-        found.min_by(|one, other| one.1.total_cmp(&other.1))
+        self.best_of(SECOND_STARTS.into_iter().map(start))
     }
 
     /// How far the power in each octave is off a model, in terms of its scatter: the sum of the squares.
@@ -196,12 +210,12 @@ impl Fit {
         let noise = self.noise(logs);
         let modes: Vec<Flexure> = modes(logs).collect();
         let (mut sum, mut excess, mut count, mut end) = (0.0, 0.0, 0.0, 0.0);
-        for (w, gain, power) in self.lines() {
+        for (w, gain, power, _) in self.lines() {
             if w > end {
                 sum += if count > 0.0 { self.data.weight * excess * excess / count } else { 0.0 };
                 (excess, count, end) = (0.0, 0.0, 2.0 * w);
             }
-            let level = modes.iter().map(|mode| density(mode, gain, self.step_s, w).0).sum::<f64>() + noise;
+            let level = modes.iter().map(|mode| density(mode, gain, self.step_s, w)).sum::<f64>() + noise;
             excess += power / level - 1.0;
             count += 1.0;
         }
@@ -255,11 +269,12 @@ impl Fit {
     fn cost<const N: usize>(&self, logs: &Logs<N>) -> f64 {
         let noise = self.noise(logs);
         let modes: Vec<Flexure> = modes(logs).collect();
+        // a logarithm costs more than all the rest of a line: the levels are multiplied as long as their product is a number
         let misfit: f64 = self
             .lines()
-            .map(|(w, gain, power)| {
-                let level = modes.iter().map(|mode| density(mode, gain, self.step_s, w).0).sum::<f64>() + noise;
-                level.ln() + power / level
+            .map(|(w, gain, power, count)| {
+                let level = modes.iter().map(|mode| density(mode, gain, self.step_s, w)).sum::<f64>() + noise;
+                count * (level.ln() + power / level)
             })
             .sum();
         let away = self.away(logs);
@@ -272,19 +287,20 @@ impl Fit {
         let noise = self.noise(logs);
         let modes: Vec<Flexure> = modes(logs).collect();
         let (mut downhill, mut information) = (Logs::<N>::zeros(), SMatrix::<f64, N, N>::zeros());
-        for (w, gain, power) in self.lines() {
+        for (w, gain, power, count) in self.lines() {
             let mut slope = Logs::<N>::zeros();
             let mut level = noise;
             slope[N - 1] = noise;
             for (mode, k) in modes.iter().zip((0..).step_by(MODE)) {
-                let (flexible, slopes) = density(mode, gain, self.step_s, w);
-                level += flexible;
+                let slopes = slopes(mode, gain, self.step_s, w);
+                level += slopes[MODE - 1];
                 slope.fixed_rows_mut::<MODE>(k).copy_from_slice(&slopes);
             }
-            slope /= level;
-            downhill += slope * (power / level - 1.0);
-            information += slope * slope.transpose();
+            slope *= 1.0 / level;
+            downhill += slope * (count * (power / level - 1.0));
+            information.syger(count, &slope, &slope, 1.0);
         }
+        information.fill_upper_triangle_with_lower_triangle();
         let mut information = information * self.data.weight;
         if self.settings.priors {
             for k in (0..N - 1).step_by(MODE) {
