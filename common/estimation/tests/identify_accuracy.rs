@@ -10,7 +10,7 @@ use estimation::flexure::Flexure;
 use estimation::identify::Settings;
 use estimation::identify::axis::{Analysis, Identified};
 use estimation::identify::chain::{Anchor, Chain};
-use estimation::identify::safety::safe;
+use estimation::identify::safety::{Belief, safe};
 use estimation::identify::window::Window;
 use identify_scene::{Scene, critical, under_damped};
 
@@ -122,7 +122,7 @@ fn short_windows_are_made_safe() {
         for seed in 0..SEEDS {
             let found = identify(Scene::new(critical(), 1000 + seed), window_s, true);
             for (one, truth) in found.iter().zip(critical()) {
-                let model = safe(one, window_s, false);
+                let model = safe(one, window_s, Belief::Guarded);
                 assert!((model.density() / truth.density()).ln() > density, "{window_s} s, seed {seed}: {model:?}");
                 stiff += usize::from(model.b > 1.3 * truth.b);
             }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used)]
 
 use estimation::flexure::Flexure;
-use estimation::identify::whittle::identify_modes;
+use estimation::identify::whittle::{Modes, identify_modes};
 use estimation::identify::{Identified, Kind, Series};
 use frames::unit::{ARCMIN, ARCSEC};
 use nalgebra::Vector2;
@@ -35,9 +35,13 @@ fn rates(modes: &[Flexure], length_s: f64, seed: u64) -> Vec<f64> {
     rates.iter().map(|rate| rate - mean).collect()
 }
 
-fn two(modes: &[Flexure], length_s: f64, seed: u64) -> Option<[Identified; 2]> {
+fn found(modes: &[Flexure], length_s: f64, seed: u64) -> Option<Modes> {
     let values = rates(modes, length_s, seed);
-    identify_modes(&Series { kind: Kind::Rates, values: &values, step_s: STEP_S })?.try_into().ok()
+    identify_modes(&Series { kind: Kind::Rates, values: &values, step_s: STEP_S })
+}
+
+fn two(modes: &[Flexure], length_s: f64, seed: u64) -> Option<[Identified; 2]> {
+    found(modes, length_s, seed)?.found.try_into().ok()
 }
 
 #[test]
@@ -65,4 +69,14 @@ fn one_mode_is_not_taken_for_two() {
             }
         }
     }
+}
+
+/// A window that one mode describes is taken at its figure; one in which something else follows the waves is not.
+#[test]
+fn one_mode_describes_a_window_of_one_and_no_other() {
+    const WAVES: Flexure = Flexure { mu: 0.02, b: 1.2, sigma: 4.0 * ARCSEC };
+    let hull = Flexure { mu: 0.1, b: 0.4, sigma: 12.0 * ARCSEC };
+    let described = |modes: &[Flexure]| (0..40).filter(|seed| found(modes, 600.0, *seed).unwrap().described).count();
+    let (alone, coupled) = (described(&[hull]), described(&[hull, WAVES]));
+    assert!(alone >= 36 && coupled == 0, "{alone} and {coupled} of 40");
 }

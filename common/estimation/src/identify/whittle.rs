@@ -64,8 +64,8 @@ const SECOND_STARTS: [f64; 5] = [0.1, 0.3, 0.8, 2.0, 4.0];
 /// Twice the logarithm of a ratio of posterior densities that leaves no doubt of a second mode: of hundreds of windows, each has some chance to mislead.
 const SECOND_DECISIVE: f64 = 30.0;
 
-/// A second mode is looked for, which takes longer than all the rest, where the power over octaves is off the model by so much: the sum of the squares of
-/// some ten normal variables. Where there is a second mode the sum goes into hundreds.
+/// The model does not describe the series where the power over octaves is off by so much: the sum of the squares of some ten normal variables. Only there
+/// is a second mode looked for, which takes longer than all the rest; where there is one the sum goes into hundreds.
 const WORTH_A_LOOK: f64 = 20.0;
 
 /// Which start leads to the best model is tried with lines merged over this share of their frequency: a sixth of them for ten minutes of rates.
@@ -82,11 +82,22 @@ pub fn identify(series: &Series, settings: &Settings) -> Option<Identified> {
     Some(found)
 }
 
-/// Identifies the modes of an axis, the slower one first: two if the data demand a second, otherwise one. `None` if the band is empty or nothing converges.
-pub fn identify_modes(series: &Series) -> Option<Vec<Identified>> {
+/// What an axis's window says if a hull may have two modes.
+#[derive(Clone, Debug)]
+pub struct Modes {
+    /// The slower one first: two if the data demand a second, otherwise one.
+    pub found: Vec<Identified>,
+    /// Whether the power over octaves is what one mode says. Where it is not, part of the series may follow the waves, even if it looks like a second mode.
+    pub described: bool,
+}
+
+/// Identifies the modes of an axis. `None` if the band is empty or nothing converges.
+pub fn identify_modes(series: &Series) -> Option<Modes> {
     let fit = Fit::new(series, &Settings::of(series))?;
     let (one, cost) = fit.best()?;
-    fit.two(&one, cost, series).or_else(|| fit.identified(&one, series))
+    let described = fit.misfit(&one) < WORTH_A_LOOK;
+    let two = if described { None } else { fit.two(&one, cost, series) };
+    Some(Modes { found: two.or_else(|| fit.identified(&one, series))?, described })
 }
 
 /// A model that was fitted to a series.
@@ -224,9 +235,6 @@ impl Fit {
 
     /// Both modes, if a second beside the `one` found at its `cost` is demanded.
     fn two(&self, one: &Logs<ONE>, cost: f64, series: &Series) -> Option<Vec<Identified>> {
-        if self.misfit(one) < WORTH_A_LOOK {
-            return None;
-        }
         let (two, least) = self.second(one)?;
         if 2.0 * (cost - least) < SECOND_DECISIVE {
             return None;

@@ -3,7 +3,7 @@ use super::axis::Identified;
 use super::chain::{Anchor, Chain};
 use super::change::changed;
 use super::method::Method;
-use super::safety::{SHORT_S, is_not_slow, safe};
+use super::safety::{Belief, SHORT_S, is_not_slow, safe};
 use super::series::{Kind, Series};
 use super::whittle;
 use super::window::Window;
@@ -22,6 +22,8 @@ const TOLERATED: f64 = 1.05;
 struct Axis {
     mode: Identified,
     second: Option<Identified>,
+    /// Whether it has been tested that one mode is all there is to the window.
+    described: bool,
 }
 
 /// The slow identifier: a window of data, rebuilt with the latest constant, each axis identified by the method of the settings,
@@ -62,11 +64,12 @@ impl Windowed {
         let looked_for = self.settings.second_mode && self.window.length_s() > SHORT_S;
         let modes = |series: &Series| {
             let found = if looked_for && series.is_usable() { whittle::identify_modes(series) } else { None };
-            match found.as_deref() {
-                Some(&[mode, second]) => Some(Axis { mode, second: Some(second) }),
+            let described = found.as_ref().is_some_and(|modes| modes.described);
+            match found.as_ref().map(|modes| modes.found.as_slice()) {
+                Some(&[mode, second]) => Some(Axis { mode, second: Some(second), described }),
                 // what the method itself would find
-                Some(&[mode]) if method == Method::Whittle => Some(Axis { mode, second: None }),
-                _ => solver.solve(series).map(|mode| Axis { mode, second: None }),
+                Some(&[mode]) if method == Method::Whittle => Some(Axis { mode, second: None, described }),
+                _ => solver.solve(series).map(|mode| Axis { mode, second: None, described }),
             }
         };
         Some([modes(&x)?, modes(&y)?, modes(&z)?])
@@ -75,17 +78,21 @@ impl Windowed {
     /// What a filter gets.
     fn hull(&self, axes: &[Axis; 3], chain: &Chain) -> Hull {
         let length_s = self.window.length_s();
-        let model = |found: &Identified, values: &[f64]| {
+        let model = |found: &Identified, described: bool, values: &[f64]| {
             if !self.settings.safety {
                 return found.flexure;
             }
             let series = Series { kind: Kind::Rates, values, step_s: chain.step_s };
-            let believed = self.settings.provisional && length_s <= SHORT_S && is_not_slow(&series);
-            safe(found, length_s, believed)
+            let belief = match self.settings.provisional {
+                true if length_s <= SHORT_S && is_not_slow(&series) => Belief::Decided,
+                true if described => Belief::Described,
+                _ => Belief::Guarded,
+            };
+            safe(found, length_s, belief)
         };
         Hull {
-            modes: [0, 1, 2].map(|i| model(&axes[i].mode, &chain.rates[i])),
-            second: [0, 1, 2].map(|i| axes[i].second.map(|second| model(&second, &chain.rates[i]))),
+            modes: [0, 1, 2].map(|i| model(&axes[i].mode, axes[i].described, &chain.rates[i])),
+            second: [0, 1, 2].map(|i| axes[i].second.map(|second| model(&second, axes[i].described, &chain.rates[i]))),
         }
     }
 }
