@@ -158,6 +158,7 @@ impl Disk {
         if std::mem::take(&mut self.said) {
             let (path, dropped) = (part.path.display(), self.tally.dropped());
             tracing::info!(%path, dropped, "recording goes on in another file; what was dropped is in none");
+            self.tally.begin_file();
         }
         if part.sound as f64 >= self.plan.settings.rotate {
             self.close(false);
@@ -172,10 +173,13 @@ impl Disk {
         let begun = self.names.make_folder().map_err(mcap_error).and_then(|()| Part::create(path.clone(), &about));
         match begun {
             Ok(part) => {
-                tracing::info!(path = %path.display(), part = about.part, "a file of the recording begins");
                 self.state = State::Open(Box::new(part));
                 self.names.advance();
-                self.tally.begin_file();
+                // after a refusal it is a file only when the disk has taken a chunk of it
+                if !self.said {
+                    tracing::info!(path = %path.display(), part = about.part, "a file of the recording begins");
+                    self.tally.begin_file();
+                }
                 self.plan.about.from_the_start = false;
                 self.flushed = Instant::now();
                 self.keep_budget(&path);

@@ -164,6 +164,7 @@ fn a_disk_that_refuses_is_tried_again_and_what_was_dropped_is_counted() {
     work(&mut disk, 0..100);
     assert_eq!(tally.dropped(), 100);
     assert!(said(&["cannot write", "records", "dropped"]));
+    assert_eq!(tally.files(), 0);
     fs::remove_file(&folder).unwrap();
     std::thread::sleep(RETRY);
     work(&mut disk, 100..150);
@@ -176,6 +177,7 @@ fn a_disk_that_refuses_is_tried_again_and_what_was_dropped_is_counted() {
     assert!(!about.from_the_start, "samples are missing before it");
     assert_eq!(*ending, Some(Ending { end_of_run: true, dropped: 101, lost: 0 }));
     assert!(said(&["goes on", "records", "dropped=101"]));
+    assert_eq!(tally.files(), 1);
 }
 
 #[test]
