@@ -1,58 +1,46 @@
 use crate::Throttle;
-use messages::Health;
 
-/// Counters that go on growing are told so often, ns.
-const PAUSE_NS: i64 = 10_000_000_000;
-
-/// Tells when what a stage counts of lost and useless data has grown.
+/// Tells when counters have grown, now and then.
 #[derive(Debug)]
-pub(crate) struct Growth {
-    told: [u64; 7],
+pub struct Growth<const N: usize> {
+    told: [u64; N],
     throttle: Throttle,
 }
 
-fn counts(health: &Health) -> [u64; 7] {
-    let Health { lost, missing, refused, suspect, overflow, late, restarted_windows, .. } = *health;
-    [lost, missing, refused, suspect, overflow, late, restarted_windows]
+impl<const N: usize> Default for Growth<N> {
+    fn default() -> Self {
+        Self { told: [0; N], throttle: Throttle::default() }
+    }
 }
 
-impl Growth {
-    pub fn new() -> Self {
-        Self { told: [0; 7], throttle: Throttle::new(PAUSE_NS) }
+impl<const N: usize> Growth<N> {
+    /// What has come to each counter since it was told last; `None` if nothing has, or if that was a moment ago.
+    pub fn take(&mut self, counts: [u64; N], now_ns: i64) -> Option<[Option<u64>; N]> {
+        (counts != self.told && self.throttle.pass(now_ns)).then(|| self.tell(counts))
     }
 
-    /// Looks at the counters; each field tells what has come to it since the last line.
-    pub fn see(&mut self, health: &Health, now_ns: i64) {
-        if counts(health) != self.told && self.throttle.pass(now_ns) {
-            self.tell(health);
-        }
+    /// The same at the end, when nothing waits any more.
+    pub fn end(&mut self, counts: [u64; N]) -> Option<[Option<u64>; N]> {
+        (counts != self.told).then(|| self.tell(counts))
     }
 
-    /// Tells what has not been told.
-    pub fn end(&mut self, health: &Health) {
-        if counts(health) != self.told {
-            self.tell(health);
-        }
+    fn tell(&mut self, counts: [u64; N]) -> [Option<u64>; N] {
+        let told = std::mem::replace(&mut self.told, counts);
+        std::array::from_fn(|i| Some(counts[i].saturating_sub(told[i])).filter(|grown| *grown > 0))
     }
+}
 
-    fn tell(&mut self, health: &Health) {
-        let grown: [Option<u64>; 7] = std::array::from_fn(|i| {
-            let grown = counts(health)[i].saturating_sub(self.told[i]);
-            (grown > 0).then_some(grown)
-        });
-        self.told = counts(health);
-        let [lost, missing, refused, suspect, overflow, late, restarted_windows] = grown;
-        let time_s = health.header.time_ns as f64 * 1e-9;
-        tracing::warn!(
-            lost,
-            missing,
-            refused,
-            suspect,
-            overflow,
-            late,
-            restarted_windows,
-            time_s,
-            "data are missing, late or of no use"
-        );
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_has_come_is_told_once_and_nothing_is_forgotten_at_the_end() {
+        let mut growth = Growth::default();
+        assert_eq!(growth.take([0, 0], 0), None);
+        assert_eq!(growth.take([3, 0], 1), Some([Some(3), None]));
+        assert_eq!(growth.take([4, 2], 2), None, "a moment ago");
+        assert_eq!(growth.end([4, 5]), Some([Some(1), Some(5)]));
+        assert_eq!(growth.end([4, 5]), None);
     }
 }

@@ -52,6 +52,7 @@ pub use domain::{Domain, Running};
 pub use error::{POISONED_EXIT_CODE, TransportError};
 pub use feed::{Delivery, Feed};
 pub use gap::Sequence;
+pub use growth::Growth;
 pub use latency::{IntervalLog, Latency, Summary};
 pub use launches::{Launch, Lookout};
 pub use node::Node;

@@ -45,7 +45,7 @@ pub struct Beat {
     pub health: Health,
     publisher: Publisher<Health>,
     last_ns: i64,
-    growth: Growth,
+    growth: Growth<7>,
 }
 
 impl Beat {
@@ -59,7 +59,7 @@ impl Beat {
             pid: std::process::id(),
             ..Health::default()
         };
-        Ok(Self { health, publisher, last_ns: monotonic_ns(), growth: Growth::new() })
+        Ok(Self { health, publisher, last_ns: monotonic_ns(), growth: Growth::default() })
     }
 
     /// Notes the main sample that was handled last: its number, its time and the clock of that time.
@@ -102,14 +102,41 @@ impl Beat {
     fn publish(&mut self, state: State, now_ns: i64) -> Result<(), TransportError> {
         self.health.state = state as u32;
         self.last_ns = now_ns;
-        self.growth.see(&self.health, now_ns);
+        if let Some(grown) = self.growth.take(losses(&self.health), now_ns) {
+            self.tell(grown);
+        }
         self.publisher.publish(&self.health).map(|_| ())
     }
+
+    /// Each field tells what has come to it since the last line.
+    fn tell(&self, grown: [Option<u64>; 7]) {
+        let [lost, missing, refused, suspect, overflow, late, restarted_windows] = grown;
+        let time_s = self.health.header.time_ns as f64 * 1e-9;
+        tracing::warn!(
+            lost,
+            missing,
+            refused,
+            suspect,
+            overflow,
+            late,
+            restarted_windows,
+            time_s,
+            "data are missing, late or of no use"
+        );
+    }
+}
+
+/// What a stage counts of lost and useless data.
+fn losses(health: &Health) -> [u64; 7] {
+    let Health { lost, missing, refused, suspect, overflow, late, restarted_windows, .. } = *health;
+    [lost, missing, refused, suspect, overflow, late, restarted_windows]
 }
 
 impl Drop for Beat {
     fn drop(&mut self) {
-        self.growth.end(&self.health);
+        if let Some(grown) = self.growth.end(losses(&self.health)) {
+            self.tell(grown);
+        }
         let Health { taken, given, state, .. } = self.health;
         tracing::debug!(taken, given, ended = state == State::Ended as u32, "stopped");
     }

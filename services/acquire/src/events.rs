@@ -1,24 +1,18 @@
 use frames::unit::seconds;
 use messages::LineHealth;
-use runtime::{Throttle, monotonic_ns};
+use runtime::{Growth, monotonic_ns};
 
 /// A unit that has said nothing for so long is silent, ns.
 const QUIET_NS: i64 = 2_000_000_000;
-/// Counters that go on growing are told so often, ns.
-const PAUSE_NS: i64 = 10_000_000_000;
-
 /// What the log hears of a unit's wire and clock, by its health once a second.
+#[derive(Default)]
 pub struct Events {
     silent: bool,
-    told: LineHealth,
-    throttle: Throttle,
+    growth: Growth<7>,
+    skipped_told: u64,
 }
 
 impl Events {
-    pub fn new() -> Self {
-        Self { silent: false, told: LineHealth::default(), throttle: Throttle::new(PAUSE_NS) }
-    }
-
     /// Compares two healths in a row.
     pub fn see(&mut self, unit: &str, port: &str, before: &LineHealth, now: &LineHealth) {
         let now_ns = monotonic_ns();
@@ -36,8 +30,8 @@ impl Events {
         if now.restarts > before.restarts {
             tracing::warn!(unit, port, restarts = now.restarts, "the device's clock has started anew");
         }
-        if losses(now) != losses(&self.told) && self.throttle.pass(now_ns) {
-            self.tell_losses(unit, port, now);
+        if let Some(grown) = self.growth.take(losses(now), now_ns) {
+            self.tell_losses(unit, port, grown, now.skipped);
         }
     }
 
@@ -57,13 +51,9 @@ impl Events {
     }
 
     /// What has come to each counter since the last line.
-    fn tell_losses(&mut self, unit: &str, port: &str, now: &LineHealth) {
-        let [damaged, lost, gaps, disordered, invalid, overflow, unkept] = std::array::from_fn(|i| {
-            let grown = losses(now)[i].saturating_sub(losses(&self.told)[i]);
-            (grown > 0).then_some(grown)
-        });
-        let skipped_bytes = now.skipped - self.told.skipped;
-        self.told = *now;
+    fn tell_losses(&mut self, unit: &str, port: &str, grown: [Option<u64>; 7], skipped: u64) {
+        let [damaged, lost, gaps, disordered, invalid, overflow, unkept] = grown;
+        let skipped_bytes = skipped - std::mem::replace(&mut self.skipped_told, skipped);
         tracing::warn!(
             unit,
             port,

@@ -75,7 +75,7 @@ impl Wired {
             unit: Unit::new(settings),
             reader: Reader::start(place, line, common.clone(), context)?,
             health: LineHealth { unit: place as u32, ..LineHealth::default() },
-            events: Events::new(),
+            events: Events::default(),
             publisher: Publisher::open(node, &topic::line(area))?,
         })
     }

@@ -4,9 +4,6 @@ use frames::unit::seconds;
 use messages::{Alarms, Flags, FlexureParams, Solution};
 use runtime::Throttle;
 
-/// What flaps is told so often, ns of data.
-const PAUSE_NS: i64 = 10_000_000_000;
-
 /// What is told when it comes and when it goes; the others come and go with single samples, or say what validity says.
 const STATES: Flags = Flags::UNOBSERVABLE
     .union(Flags::SILENT)
@@ -50,7 +47,7 @@ struct Turn {
 
 impl Turn {
     fn new(flag: Flags, words: &'static str) -> Self {
-        let throttle = Throttle::new(PAUSE_NS);
+        let throttle = Throttle::default();
         Self { flag, words, is: false, told: false, changed_ns: 0, since_ns: None, changes: 0, throttle }
     }
 
@@ -85,7 +82,7 @@ struct Happening {
 
 impl Happening {
     fn new(flag: Flags, words: &'static str) -> Self {
-        Self { flag, words, times: 0, throttle: Throttle::new(PAUSE_NS) }
+        Self { flag, words, times: 0, throttle: Throttle::default() }
     }
 
     fn see(&mut self, time_ns: i64) {

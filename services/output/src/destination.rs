@@ -36,9 +36,6 @@ struct Logged {
     throttle: Throttle,
 }
 
-/// A line that comes and goes is told so often, ns.
-const PAUSE_NS: i64 = 10_000_000_000;
-
 impl Destination {
     /// Opens a destination of the configuration. With `resume` a line that cannot be opened now is opened later.
     pub fn open(configuration: &Configuration, number: usize, run_id: u64, resume: bool) -> Result<Self, OutputError> {
@@ -70,7 +67,7 @@ impl Destination {
             zero: None,
             last_utc_ns: i64::MIN,
             due_ns: monotonic_ns() + nanoseconds(output.silence_s),
-            logged: Logged { open: true, throttle: Throttle::new(PAUSE_NS) },
+            logged: Logged { open: true, throttle: Throttle::default() },
             output,
         })
     }
