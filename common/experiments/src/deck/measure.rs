@@ -4,7 +4,6 @@ use super::method::{self, Knowledge, Rival, run_blind, run_true};
 use super::paired::Paired;
 use super::scenario::Scenario;
 use crate::{Data, Fault, Point, Track, Trial};
-use pipeline::configuration::Configuration;
 use std::ops::RangeInclusive;
 
 /// The spans of time in which errors count, s: after five minutes, and the minutes before.
@@ -38,18 +37,6 @@ pub(super) struct Beside {
     pub as_it_is: Option<Paired>,
     /// Told what the other takes for known, if there is anything.
     pub as_knowing: Option<Paired>,
-}
-
-impl Beside {
-    fn of(rival: &Rival, configuration: &Configuration, ours: &Track, data: &Data) -> Result<Self, Fault> {
-        let other = run_blind(&rival.on(configuration)?, data);
-        let over_other = |track: &Track| paired(track, &other)[0];
-        let knowing = |knowledge: Knowledge| run_blind(&method::default(configuration).with(knowledge.tell), data);
-        Ok(Self {
-            as_it_is: over_other(ours),
-            as_knowing: rival.knowledge().and_then(|knowledge| over_other(&knowing(knowledge))),
-        })
-    }
 }
 
 /// What a method says of its own error, against that error.
@@ -106,10 +93,17 @@ pub(super) fn measure(scenario: &Scenario, trial: &Trial) -> Result<Option<Measu
     let truth = run_true(&told, &data, 0.0);
     let changes = !configuration.areas[0].simulation.flexure_changes.is_empty();
     let later = changes.then(|| run_true(&told, &data, TOLD_LATER_S));
-    let rivals = scenario.rivals.iter().map(|rival| Beside::of(rival, &configuration, &ours, &data));
+    let knowing = |knowledge: Knowledge| (knowledge.what, run_blind(&default.with(knowledge.tell), &data));
+    let knowing: Vec<(&str, Track)> = scenario.knowledge().into_iter().map(knowing).collect();
+    let beside = |rival: &Rival| -> Result<Beside, Fault> {
+        let other = run_blind(&rival.on(&configuration)?, &data);
+        let of_rival = |(what, _): &&(&str, Track)| rival.knowledge().is_some_and(|knowledge| knowledge.what == *what);
+        let as_knowing = knowing.iter().find(of_rival).and_then(|(_, track)| paired(track, &other)[0]);
+        Ok(Beside { as_it_is: paired(&ours, &other)[0], as_knowing })
+    };
     Ok(Some(Measured {
         seed: trial.seed,
-        rivals: rivals.collect::<Result<_, Fault>>()?,
+        rivals: scenario.rivals.iter().map(beside).collect::<Result<_, Fault>>()?,
         truth: paired(&ours, &truth),
         told_later: later.and_then(|later| paired(&later, &truth)[0]),
         honesty: [Honesty::of(&ours), Honesty::of(&truth)],

@@ -112,24 +112,22 @@ fn axis_rows(thirds: &Thirds, axis: usize) -> [Row; 3] {
     let honest = thirds.last.rmse()[axis] / thirds.last.rms_of(Point::sigma)[axis];
     let grown = thirds.last.rms_of(Point::sigma)[axis] / thirds.first.rms_of(Point::sigma)[axis];
     let covered = thirds.last.coverage(|point| point.range)[axis];
-    let range = Published::Range(HONEST.0, HONEST.1);
     [
-        row("honest", "RMSE over standard deviation, last third", name, range, Bound::Value(1.0), honest),
-        row(
-            "grown",
-            "standard deviation, last third over first",
-            name,
-            Published::AtMost(GROWN),
+        (
+            "honest",
+            "RMSE over standard deviation, last third",
+            Published::Range(HONEST.0, HONEST.1),
             Bound::Value(1.0),
-            grown,
+            honest,
         ),
-        row(
+        ("grown", "standard deviation, last third over first", Published::AtMost(GROWN), Bound::Value(1.0), grown),
+        (
             "coverage",
             "share of errors in the range, last third",
-            name,
             Published::AtLeast(COVERED),
             Bound::Value(0.95),
             covered,
         ),
     ]
+    .map(|(key, what, paper, bound, ours)| row(key, what, name, paper, bound, ours))
 }
