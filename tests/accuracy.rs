@@ -121,14 +121,14 @@ fn lively(seed: u64) -> Configuration {
 /// The noise that drives a flexure is in the velocities and in the force between them; once that was taken for a delay, by 6 ms and 120 arcsec.
 #[test]
 fn a_lively_hull_on_a_long_lever_arm_is_not_taken_for_a_delay() {
-    let found = runs((1..=8).map(lively).collect());
+    let found = runs((1..=16).map(lively).collect());
     let nees: f64 = found.iter().map(|run| run.nees).sum();
-    println!("rms arcmin {:.3?}; NEES of 8 seeds {nees:.1} of 24", rms(&found));
-    let outside = found.iter().map(|run| run.deck_outside / run.count).sum::<f64>() / 8.0;
+    println!("rms arcmin {:.3?}; NEES of 16 seeds {nees:.1} of 48", rms(&found));
+    let outside = found.iter().map(|run| run.deck_outside / run.count).sum::<f64>() / 16.0;
     println!("deck attitude outside its range: {outside:.3}");
     assert!(outside < 0.07, "{outside}");
-    // 99.9 % of a chi-square with 24 degrees of freedom
-    assert!(nees < 51.2, "{nees}");
+    // 99.9 % of a chi-square with 48 degrees of freedom
+    assert!(nees < 84.1, "{nees}");
     assert!(rms(&found).iter().all(|&rms| rms < 1.5), "{:?}", rms(&found));
 }
 
