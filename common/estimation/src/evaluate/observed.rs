@@ -7,7 +7,8 @@
 //! `e_x = sqrt(<v_y^2> V_z + <v_z^2> V_y) / (<w_y^2> + <w_z^2>)`, `V_i = g_i^2 <d_i^2>` plus the variance of the estimate,
 //!
 //! with `v` the ship's rate in waves alone: a turn shows the static angle, and no flexure goes with it. The range is 1.96 deviations of
-//! the filter and, in quadrature, twice that and a tenth of the angle of full coherence, since a coupling may hide by chance.
+//! the filter and, in quadrature, four times that and 0.15 of the angle of full coherence, since a coupling may hide by chance: of the part in
+//! step only what no static angle takes up is seen, so one of any phase hides more than four times what it shows in one case of six.
 
 use super::error_range::others;
 use super::window::Window;
@@ -16,8 +17,10 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use serde::{Deserialize, Serialize};
 
 /// How many times the angle of the coherence that is seen counts, and how much that of full coherence.
-const SEEN: f64 = 2.0;
-const UNSEEN: f64 = 0.1;
+const SEEN: f64 = 4.0;
+const UNSEEN: f64 = 0.15;
+/// A share of the square up to so many times what chance explains is none: chance exceeds it once in sixteen.
+const BY_CHANCE: f64 = 2.0;
 /// Slower movements of the ship than this are turns, s.
 const WAVES_S: f64 = 30.0;
 /// Evidence is taken so often, s.
@@ -86,8 +89,8 @@ impl Observed {
         let share = |i: usize| {
             let square = mean[DD + i].max(f64::MIN_POSITIVE);
             let r2 = explained.as_ref().map_or(1.0, |by| (by.column(i).dot(&xd.column(i)) / square).clamp(0.0, 1.0));
-            // so much of the square chance explains in so little data
-            let chance = REGRESSORS as f64 * CORRELATION_S / self.taken_s.max(f64::MIN_POSITIVE);
+            // so much of the square chance may explain in so little data
+            let chance = BY_CHANCE * REGRESSORS as f64 * CORRELATION_S / self.taken_s.max(f64::MIN_POSITIVE);
             if chance < 1.0 { ((r2 - chance) / (1.0 - chance)).max(0.0) } else { 1.0 }
         };
         let size = |i: usize| mean[DD + i] + rate_covariance[(i, i)];
@@ -157,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_coherence_that_is_seen_widens_it_and_none_leaves_a_tenth() {
+    fn a_coherence_that_is_seen_widens_it_and_none_leaves_a_little() {
         let (none, half, full) = (seen(0.0, 0.0), seen(0.5, 0.0), seen(1.0, 0.0));
         for axis in 0..3 {
             assert!(half[axis] > 3.0 * none[axis] && full[axis] > 1.5 * half[axis], "{none:?} {half:?} {full:?}");
