@@ -209,15 +209,24 @@ impl Slow {
         self.p.diagonal().iter().all(|v| v.is_finite() && *v >= 0.0).then_some(())
     }
 
-    /// By how much the deformation by the constant of a fast filter is turned by what this one shows, and the covariance after that; `known` is the
-    /// covariance before (rad^2, in m), `now` the units' attitudes. `None` before anything shows.
-    pub fn correct(&self, fast: &So3, now: &Together, known: &Matrix3<f64>) -> Option<(Rot<Main, Main>, Matrix3<f64>)> {
+    /// By how much the deformation by the constant of a fast filter is turned by what this one shows, and the covariance after that. `likely` is the
+    /// covariance before (rad^2, in m) by which the two are weighed, `known` the one that is answered for, `now` the units' attitudes. `None` before anything
+    /// shows.
+    pub fn correct(
+        &self,
+        fast: &So3,
+        now: &Together,
+        likely: &Matrix3<f64>,
+        known: &Matrix3<f64>,
+    ) -> Option<(Rot<Main, Main>, Matrix3<f64>)> {
         self.last?;
         let rows = self.so3.deformation_rows();
         let seen = rows * self.p * rows.transpose() + self.so3.deformation_noise();
-        let gain = known * (known + seen).try_inverse()?;
+        let gain = likely * (likely + seen).try_inverse()?;
+        let left = Matrix3::identity() - gain;
         let off = (now.a_m.inverse() * self.so3.constant() * fast.constant().inverse() * now.a_m).log().column();
-        Some((Rot::exp(Vec3::from_column(gain * off)), (Matrix3::identity() - gain) * known))
+        let covariance = left * known * left.transpose() + gain * seen * gain.transpose();
+        Some((Rot::exp(Vec3::from_column(gain * off)), covariance))
     }
 }
 
@@ -307,7 +316,7 @@ mod tests {
         let (_, swing) = ship(until_s);
         let (a_m, a_s) = attitudes(until_s);
         let now = Together { a_m, a_s, w_m: Vec3::ZERO, gained: Velocities::ZERO };
-        let (turn, covariance) = slow.correct(&fast, &now, &known).expect("begun");
+        let (turn, covariance) = slow.correct(&fast, &now, &known, &known).expect("begun");
         let deformation = a_m.inverse() * fast.constant() * a_s;
         let error = (turn * deformation * bent(until_s, swing).inverse()).log().column() / ARCSEC;
         Seen { error, covariance: covariance / (ARCSEC * ARCSEC), refuted, excess: slow.excess() }
