@@ -4,7 +4,7 @@
 //! wide a sigma at the same Q loses nothing that can be measured. So a model near critical damping gets twice its sigma at the
 //! same Q, `b' = mu' = (Q / 4 sigma'^2)^(1/3)`; one that oscillates keeps b and mu and gets 1.15 sigma. Where the parameters are renewed
 //! all the time and the window holds nothing else, a long one's oscillation is taken at its figure: with 1.15 the estimator of paper 003's
-//! ship claimed 54, 47 and 38 arcsec where it was 45, 39 and 33 off and one told the truth claimed 47, 41 and 34; at its figure 47, 41
+//! ship claimed 54, 47 and 38 arcsec where it was 45, 39 and 33 off and one told the truth claimed 47, 41 and 34; at its figure 48, 42
 //! and 34. Where part of the flexure follows the waves it needs the margin: without it 1.96 deviations held .924 of the dynamic part's
 //! errors about x, not .946.
 //!

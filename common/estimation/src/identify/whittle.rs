@@ -277,7 +277,6 @@ impl Fit {
     fn cost<const N: usize>(&self, logs: &Logs<N>) -> f64 {
         let noise = self.noise(logs);
         let modes: Vec<Flexure> = modes(logs).collect();
-        // a logarithm costs more than all the rest of a line: the levels are multiplied as long as their product is a number
         let misfit: f64 = self
             .lines()
             .map(|(w, gain, power, count)| {

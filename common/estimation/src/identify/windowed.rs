@@ -78,21 +78,23 @@ impl Windowed {
     /// What a filter gets.
     fn hull(&self, axes: &[Axis; 3], chain: &Chain) -> Hull {
         let length_s = self.window.length_s();
-        let model = |found: &Identified, described: bool, values: &[f64]| {
+        let model = |i: usize, found: &Identified| {
             if !self.settings.safety {
                 return found.flexure;
             }
-            let series = Series { kind: Kind::Rates, values, step_s: chain.step_s };
-            let belief = match self.settings.provisional {
-                true if length_s <= SHORT_S && is_not_slow(&series) => Belief::Decided,
-                true if described => Belief::Described,
-                _ => Belief::Guarded,
+            let series = Series { kind: Kind::Rates, values: &chain.rates[i], step_s: chain.step_s };
+            let belief = if self.settings.provisional && length_s <= SHORT_S && is_not_slow(&series) {
+                Belief::Decided
+            } else if self.settings.provisional && axes[i].described {
+                Belief::Described
+            } else {
+                Belief::Guarded
             };
             safe(found, length_s, belief)
         };
         Hull {
-            modes: [0, 1, 2].map(|i| model(&axes[i].mode, axes[i].described, &chain.rates[i])),
-            second: [0, 1, 2].map(|i| axes[i].second.map(|second| model(&second, axes[i].described, &chain.rates[i]))),
+            modes: [0, 1, 2].map(|i| model(i, &axes[i].mode)),
+            second: [0, 1, 2].map(|i| axes[i].second.map(|second| model(i, &second))),
         }
     }
 }
