@@ -4,6 +4,7 @@ use runtime::{Growth, monotonic_ns};
 
 /// A unit that has said nothing for so long is silent, ns.
 const QUIET_NS: i64 = 2_000_000_000;
+
 /// What the log hears of a unit's wire and clock, by its health once a second.
 #[derive(Default)]
 pub struct Events {

@@ -97,8 +97,8 @@ pub(super) fn measure(scenario: &Scenario, trial: &Trial) -> Result<Option<Measu
     let knowing: Vec<(&str, Track)> = scenario.knowledge().into_iter().map(knowing).collect();
     let beside = |rival: &Rival| -> Result<Beside, Fault> {
         let other = run_blind(&rival.on(&configuration)?, &data);
-        let of_rival = |(what, _): &&(&str, Track)| rival.knowledge().is_some_and(|knowledge| knowledge.what == *what);
-        let as_knowing = knowing.iter().find(of_rival).and_then(|(_, track)| paired(track, &other)[0]);
+        let told_so = |knowledge: Knowledge| knowing.iter().find(|(what, _)| *what == knowledge.what);
+        let as_knowing = rival.knowledge().and_then(told_so).and_then(|(_, track)| paired(track, &other)[0]);
         Ok(Beside { as_it_is: paired(&ours, &other)[0], as_knowing })
     };
     Ok(Some(Measured {
