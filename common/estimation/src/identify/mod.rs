@@ -36,6 +36,7 @@ pub mod gaussian;
 pub mod lagged;
 pub mod matrix_pencil;
 pub mod method;
+mod onset;
 pub mod particle_swarm;
 pub mod periodogram;
 pub mod poles;

@@ -104,6 +104,18 @@ pub fn identify_modes(series: &Series) -> Option<Modes> {
 #[derive(Clone, Copy, Debug)]
 pub struct Fitted(Logs<ONE>);
 
+impl Fitted {
+    /// The mode.
+    pub fn mode(&self) -> Option<Flexure> {
+        modes(&self.0).next().filter(Flexure::is_sound)
+    }
+
+    /// Density of the white noise, the series' square times s.
+    pub fn noise(&self) -> f64 {
+        self.0[MODE].exp()
+    }
+}
+
 /// The most probable model of a series; `None` if the band is empty or nothing converges.
 pub fn fitted(series: &Series) -> Option<Fitted> {
     Fit::new(series, &Settings::of(series))?.best().map(|(logs, _)| Fitted(logs))
