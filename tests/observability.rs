@@ -3,9 +3,10 @@
 
 use frames::{Main, Rot, Sub, Vec3, unit};
 use messages::{Flags, Solution, Truth};
-use pipeline::configuration::Configuration;
+use pipeline::configuration::{Configuration, EstimatorSettings, IdentifierSettings};
 use pipeline::offline::{self, Sink};
 use pipeline::summary::deformation_error;
+use simulation::SeaChange;
 
 /// One area; `ship`, `area` and `sub` are lines for their tables.
 fn configuration(ship: &str, area: &str, simulation: &str, seed: u64, duration_s: f64) -> Configuration {
@@ -93,6 +94,25 @@ fn roll_alone_leaves_the_angle_about_its_own_axis_unknown() {
         }
         (0..3).for_each(|axis| assert!(error.array()[axis].abs() < 3.5 * sigma(last, axis), "seed {seed} axis {axis}"));
     }
+}
+
+/// What both units felt in port is of no use to a filter that starts at sea.
+#[test]
+fn a_ship_that_sails_after_a_quarter_of_an_hour_is_registered_then() {
+    let sails_s = 900.0;
+    let ship = "roll = { amplitude_deg = 5e-4 }\npitch = { amplitude_deg = 5e-4 }\nheading = { amplitude_deg = 5e-4 }";
+    let configuration = configuration(ship, "", "", 1, sails_s + 200.0).with(|c| {
+        c.areas[0].estimator = EstimatorSettings::default();
+        c.areas[0].identifier = IdentifierSettings::default();
+        c.simulation.sea_change = Some(SeaChange { at_s: sails_s, factor: 8e3, ramp_s: 30.0 });
+    });
+    let all = All::of(&configuration);
+    let (port, sea): (Vec<&Solution>, Vec<&Solution>) =
+        all.solutions.iter().partition(|solution| unit::seconds(solution.header.time_ns) < sails_s);
+    assert!(port.iter().all(|solution| !solution.is_valid()));
+    assert!(sea.iter().skip(10_000).all(|solution| solution.is_valid() || solution.flags.contains(Flags::GAP)));
+    let (last, error) = all.last();
+    assert!((0..3).all(|axis| error.array()[axis].abs() < 3.0 * sigma(last, axis)), "{error:?}");
 }
 
 #[test]

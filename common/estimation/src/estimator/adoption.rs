@@ -8,6 +8,8 @@ use std::collections::VecDeque;
 
 /// Parameter sets that wait for their time.
 const WAITING: usize = 8;
+/// A window that is shorter than the one before by more than this has been cut, ns: what came before speaks of another flexure.
+const CUT_NS: i64 = 60_000_000_000;
 
 /// The set in force and those that wait.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -16,11 +18,17 @@ pub(super) struct Adoption {
     waiting: VecDeque<FlexureParams>,
     params: Option<FlexureParams>,
     last_ns: Option<i64>,
+    /// Where the flexure became another one, ns, until that is asked for.
+    changed_ns: Option<i64>,
+}
+
+fn length_ns(params: &FlexureParams) -> i64 {
+    params.effective_from_ns.saturating_sub(params.window_begin_ns)
 }
 
 impl Adoption {
     pub(super) fn new() -> Self {
-        Self { waiting: VecDeque::with_capacity(WAITING), params: None, last_ns: None }
+        Self { waiting: VecDeque::with_capacity(WAITING), params: None, last_ns: None, changed_ns: None }
     }
 
     /// Takes an offer, unless it is known or unsound; `true` if it came after its time.
@@ -44,8 +52,19 @@ impl Adoption {
     pub(super) fn advance(&mut self, time_ns: i64) {
         self.last_ns = Some(time_ns);
         while self.waiting.front().is_some_and(|params| params.effective_from_ns <= time_ns) {
-            self.params = self.waiting.pop_front();
+            let next = self.waiting.pop_front();
+            if let (Some(before), Some(next)) = (&self.params, &next)
+                && length_ns(before).saturating_sub(length_ns(next)) > CUT_NS
+            {
+                self.changed_ns = Some(next.window_begin_ns);
+            }
+            self.params = next;
         }
+    }
+
+    /// Where the flexure became another one, ns, if that has been noticed since the last call.
+    pub(super) fn take_change(&mut self) -> Option<i64> {
+        self.changed_ns.take()
     }
 
     /// Identity of the set in force, 0 for none.

@@ -1,40 +1,75 @@
-//! What both units felt since the first pair, joined to the filter's intervals: what a filter with other parameters runs over again.
+//! What both units felt lately, joined to the filter's intervals, and a filter that stands at its beginning: what is run over again with other parameters.
+//!
+//! The history begins where the flexure in force begins, with the first pair or with a change, for as long as every new set of parameters says more of that
+//! time; then it follows the live filter some minutes behind, so that a change that is noticed late finds a filter that has not yet lived through it.
 
+use super::DeckSettings;
+use super::running::Running;
+use crate::flexure::Hull;
 use crate::matching::increment::Increment;
 use serde::{Deserialize, Serialize};
+use std::collections::VecDeque;
 
 /// The longest history, s. A later change of the flexure model has little to say about the first minutes.
 const LONGEST_S: f64 = 600.0;
-/// The most increments that are kept.
+/// So far the filter at its beginning stays behind while nothing changes, s: longer than it takes to notice a change.
+const BEHIND_S: f64 = 180.0;
+/// The most increments that are kept, and room for those that come while a second filter runs over them.
 const ROOM: usize = 6000;
+const SPARE: usize = 256;
+/// So many increments are run over at each pair.
+pub const AT_ONCE: usize = 5;
 
-/// The increments of the epoch in which the filter started.
+/// The increments of the epoch, oldest first.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct History {
-    steps: Vec<Increment>,
+    steps: VecDeque<Increment>,
     joining: Option<Increment>,
     begin_ns: i64,
     period_s: f64,
     length_s: f64,
+    /// Where the flexure in force begins, ns; `None` while the beginning follows the end.
+    anchor_ns: Option<i64>,
+    /// The filter at the beginning; `None` before any has started.
+    base: Option<Box<Running>>,
+    /// Whether it begins with the epoch, where a filter starts anew with every set of parameters.
+    first: bool,
     ended: bool,
 }
 
 impl History {
     /// An empty history of increments of at least `period_s`.
     pub fn new(period_s: f64) -> Self {
-        Self { steps: Vec::with_capacity(ROOM), joining: None, begin_ns: 0, period_s, length_s: 0.0, ended: false }
+        Self {
+            steps: VecDeque::with_capacity(ROOM + SPARE),
+            joining: None,
+            begin_ns: 0,
+            period_s,
+            length_s: 0.0,
+            anchor_ns: None,
+            base: None,
+            first: true,
+            ended: false,
+        }
     }
 
-    /// Begins anew with the pair at `begin_ns`.
+    /// Begins anew with the pair at `begin_ns`, where a flexure begins.
     pub fn restart(&mut self, begin_ns: i64) {
-        self.steps.clear();
-        (self.joining, self.begin_ns, self.length_s, self.ended) = (None, begin_ns, 0.0, false);
+        self.end();
+        (self.begin_ns, self.anchor_ns, self.first, self.ended) = (begin_ns, Some(begin_ns), true, false);
+    }
+
+    /// Begins anew beside a live filter, whose flexure began before.
+    pub fn follow(&mut self, live: &Running) {
+        self.restart(live.last_ns());
+        self.base = Some(Box::new(live.clone()));
+        self.release();
     }
 
     /// Takes no more: what comes does not join what is here.
     pub fn end(&mut self) {
-        self.ended = true;
         self.steps.clear();
+        (self.joining, self.base, self.anchor_ns, self.length_s, self.ended) = (None, None, None, 0.0, true);
     }
 
     /// Whether it reaches up to now.
@@ -52,8 +87,38 @@ impl History {
         self.length_s
     }
 
+    /// Where the flexure in force begins, ns, if the history begins there.
+    pub fn anchor_ns(&self) -> Option<i64> {
+        self.anchor_ns.filter(|&anchor_ns| self.steps.front().is_none_or(|first| first.time_ns > anchor_ns))
+    }
+
+    /// Whether it begins with the epoch.
+    pub fn is_first(&self) -> bool {
+        self.first
+    }
+
+    /// The filter at its beginning; `None` where one starts anew with every set of parameters.
+    pub fn base(&self) -> Option<&Running> {
+        self.base.as_deref().filter(|_| !self.first)
+    }
+
+    /// Replaces the filter at its beginning.
+    pub fn set_base(&mut self, running: &Running) {
+        self.base = Some(Box::new(running.clone()));
+    }
+
+    /// The flexure has become another one at an instant, from which on the increments are kept.
+    pub fn anchor(&mut self, time_ns: i64) {
+        (self.anchor_ns, self.first) = (Some(time_ns.max(self.begin_ns)), false);
+    }
+
+    /// The parameters to come say nothing more of the beginning, which follows the end from now on.
+    pub fn release(&mut self) {
+        (self.anchor_ns, self.first) = (None, false);
+    }
+
     /// The increments, oldest first.
-    pub fn steps(&self) -> &[Increment] {
+    pub fn steps(&self) -> &VecDeque<Increment> {
         &self.steps
     }
 
@@ -68,10 +133,35 @@ impl History {
             return false;
         }
         self.length_s += joined.time_s;
-        self.steps.push(joined);
-        if self.length_s > LONGEST_S || self.steps.len() == ROOM {
-            self.end();
+        self.steps.push_back(joined);
+        if self.length_s > LONGEST_S || self.steps.len() >= ROOM {
+            match self.base {
+                Some(_) => self.release(),
+                None => self.end(),
+            }
         }
         !self.ended
+    }
+
+    /// Lets the filter at the beginning come nearer to where it should stand; by the model in force unless another flexure is ahead of it.
+    pub fn advance(&mut self, hull: Hull, settings: &DeckSettings) {
+        for _ in 0..AT_ONCE {
+            let (Some(base), Some(first)) = (&mut self.base, self.steps.front()) else { return };
+            let is_due = match self.anchor_ns {
+                Some(anchor_ns) => first.time_ns <= anchor_ns,
+                None => self.length_s > BEHIND_S || self.steps.len() >= ROOM,
+            };
+            if !is_due {
+                return;
+            }
+            if self.anchor_ns.is_none() {
+                base.set_flexure(hull);
+            }
+            (self.begin_ns, self.length_s) = (first.time_ns, self.length_s - first.time_s);
+            if base.step(first.time_ns, Some(first), settings).is_none() {
+                return self.end();
+            }
+            self.steps.pop_front();
+        }
     }
 }

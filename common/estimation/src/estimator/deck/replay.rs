@@ -1,15 +1,15 @@
-//! The first minutes run over again beside the live filter, whenever better parameters come.
+//! What came lately run over again beside the live filter, whenever better parameters come: the first minutes, and those since a change of the flexure.
 
 use super::DeckEstimator;
+use super::history::AT_ONCE;
 use super::running::Running;
+use super::state::State;
 use frames::unit;
 use serde::{Deserialize, Serialize};
 
-/// So many increments of the history are run over at each pair.
-const AT_ONCE: usize = 5;
 /// The history is run over again when it has grown by this factor.
 const GROWN: f64 = 1.2;
-/// A window that begins so long after the first solution does not speak of the first minutes, s.
+/// A window that begins so long after the flexure does not speak of its beginning, s.
 const LATEST_WINDOW_S: f64 = 10.0;
 /// By how much more than a step the range is widened before it.
 const MARGIN: f64 = 1.2;
@@ -26,9 +26,12 @@ impl DeckEstimator {
     pub(super) fn run_again(&mut self) {
         let Some(origin) = &self.state.origin else { return };
         let hull = self.hull(origin);
-        let running =
-            Running::new(origin.begin(&self.settings, hull), self.state.history.begin_ns(), self.settings.period_s());
+        let begin_ns = self.state.history.begin_ns();
+        let anew = || Running::new(origin.begin(&self.settings, hull), begin_ns, self.settings.period_s());
+        let mut running = self.state.history.base().cloned().unwrap_or_else(anew);
         if self.settings.replay {
+            self.state.history.set_base(&running);
+            running.set_flexure(hull);
             self.state.shadow = Some(Shadow { running: Box::new(running), done: 0 });
         } else {
             self.state.history.end();
@@ -39,28 +42,44 @@ impl DeckEstimator {
         self.state.again_s = self.state.history.length_s() * GROWN;
     }
 
-    /// Whether the parameters in force speak of the end of the history only, the flexure having become another one.
-    fn is_of_another_flexure(&self) -> bool {
-        let begin_ns = self.state.adoption.window_begin_ns().unwrap_or(i64::MIN);
-        let since_start_s = unit::seconds(begin_ns.saturating_sub(self.state.started_ns));
-        self.state.live.is_some() && since_start_s > LATEST_WINDOW_S
+    /// Lets the history begin where the parameters in force do, or follow the live filter where they say nothing more of its beginning.
+    fn place_history(&mut self) {
+        let Some(live) = self.state.live.as_ref().filter(|_| self.settings.replay && self.state.shadow.is_none())
+        else {
+            return;
+        };
+        if !self.state.history.is_complete() {
+            self.state.history.follow(live);
+        }
+        if let Some(changed_ns) = self.state.adoption.take_change() {
+            self.state.history.anchor(changed_ns);
+            self.state.again_s = 0.0;
+        } else if let Some(anchor_ns) = self.state.history.anchor_ns() {
+            // what comes before the first solution is in the windows or not, as the identifier likes
+            let first_ns = anchor_ns.max(if self.state.history.is_first() { self.state.started_ns } else { i64::MIN });
+            let begin_ns = self.state.adoption.window_begin_ns().unwrap_or(i64::MIN);
+            if unit::seconds(begin_ns.saturating_sub(first_ns)) > LATEST_WINDOW_S {
+                self.state.history.release();
+            }
+        }
+        if let Some(origin) = &self.state.origin {
+            let hull = self.hull(origin);
+            self.state.history.advance(hull, &self.settings);
+        }
     }
 
     /// Lets the second filter catch up; where it has, it takes over. `at_end` says that the live filter stands at the end of the history.
     pub(super) fn catch_up(&mut self, at_end: bool) {
-        let news =
-            self.state.adoption.id() != self.state.replayed_id && self.state.history.length_s() >= self.state.again_s;
-        if news && self.state.live.is_some() && self.state.shadow.is_none() && self.state.history.is_complete() {
+        self.place_history();
+        let State { adoption, history, live, shadow, .. } = &self.state;
+        let news = adoption.id() != self.state.replayed_id && history.length_s() >= self.state.again_s;
+        if news && live.is_some() && shadow.is_none() && history.anchor_ns().is_some() {
             self.run_again();
         }
-        if self.is_of_another_flexure() {
-            self.state.history.end();
-        }
-        let Some(shadow) = &mut self.state.shadow else { return };
         if !self.state.history.is_complete() && self.state.live.is_some() {
             self.state.shadow = None;
-            return;
         }
+        let Some(shadow) = &mut self.state.shadow else { return };
         let steps = self.state.history.steps();
         for step in steps.iter().skip(shadow.done).take(AT_ONCE) {
             shadow.done += 1;
