@@ -8,6 +8,7 @@ mod history;
 mod origin;
 mod replay;
 mod running;
+mod slam;
 mod slow;
 mod state;
 mod surprise;

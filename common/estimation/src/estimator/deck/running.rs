@@ -1,6 +1,7 @@
 //! The filter at work: the model of [`crate::matching::deck`] with its covariance.
 
 use super::DeckSettings;
+use super::slam;
 use super::surprise::Surprise;
 use crate::filter::{sequential, symmetrise};
 use crate::flexure::Hull;
@@ -93,7 +94,7 @@ impl Running {
             self.predict();
             self.start_epoch();
         } else if due {
-            self.predict();
+            let noise = self.predict();
             if self.chain_is_broken() {
                 self.start_epoch();
             }
@@ -108,7 +109,8 @@ impl Running {
                 seen.noise[(VELOCITY_ROW + axis, VELOCITY_ROW + axis)] += left_out.1[axis];
             }
             seen.noise *= (settings.area.filter_hz / NOISE_HZ).max(1.0);
-            let correction = sequential::update(&mut self.p, &seen.residual, &seen.matrix, &seen.noise)?;
+            // a filter that is surprised all the time has a wrong model, not a rough sea
+            let correction = slam::update(&mut self.p, &seen, &noise, self.surprise.is_small())?;
             self.deck.inject(&correction.error);
             self.surprise.take(correction.surprise);
         }
@@ -147,9 +149,11 @@ impl Running {
         chain > BROKEN * BROKEN && chain > 4.0 * trace(self.deck.view(true).rows)
     }
 
-    fn predict(&mut self) {
+    /// Propagates the covariance; gives what it added.
+    fn predict(&mut self) -> Covariance {
         let prediction = self.deck.propagate();
         self.p = sequential::carried(&prediction.transition, &self.p) + prediction.noise;
+        prediction.noise
     }
 
     fn is_sound(&self) -> Option<()> {
