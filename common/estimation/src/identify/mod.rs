@@ -26,6 +26,7 @@
 
 pub mod autocovariance;
 pub mod axis;
+mod blows;
 pub mod bound;
 pub mod chain;
 pub mod change;

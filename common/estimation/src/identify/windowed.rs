@@ -1,5 +1,6 @@
 use super::Settings;
 use super::axis::Identified;
+use super::blows::without_blows;
 use super::chain::{Anchor, Chain};
 use super::change::changed;
 use super::method::Method;
@@ -56,6 +57,11 @@ impl Windowed {
         }
     }
 
+    /// The rates about an axis without the blows of the sea, if there are any and the filter reckons with them itself.
+    fn calmed(&self, series: &Series) -> Option<Vec<f64>> {
+        if self.settings.provisional { without_blows(series) } else { None }
+    }
+
     /// The modes about each axis of m.
     fn identify(&self, chain: &Chain) -> Option<[Axis; 3]> {
         let Settings { method, dictionary, .. } = self.settings;
@@ -72,7 +78,11 @@ impl Windowed {
                 _ => solver.solve(series).map(|mode| Axis { mode, second: None, described }),
             }
         };
-        Some([modes(&x)?, modes(&y)?, modes(&z)?])
+        let axis = |series: &Series| match self.calmed(series) {
+            Some(calm) => modes(&Series { values: &calm, ..*series }),
+            None => modes(series),
+        };
+        Some([axis(&x)?, axis(&y)?, axis(&z)?])
     }
 
     /// What a filter gets.
