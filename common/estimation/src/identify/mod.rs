@@ -8,7 +8,8 @@
 //! |---|---|
 //! | points at 10 Hz, gaps, when to fire | [`window`] |
 //! | relative rate of the window | [`chain`] |
-//! | whether the flexure has become another | [`change`] |
+//! | whether the flexure has become another, and when | [`change`], `onset` |
+//! | rates without the blows of a sea that hits the hull | `blows` |
 //! | one axis by a method | [`method`] |
 //! | what a filter may safely use | [`safety`] |
 //! | all together as an [`Identifier`](crate::Identifier) | [`Windowed`] |

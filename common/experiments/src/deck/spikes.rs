@@ -10,10 +10,11 @@ use pipeline::configuration::Configuration;
 const DURATION_S: f64 = 600.0;
 /// What the RMSE may be over that of the clean data.
 const LIMIT: f64 = 1.1;
-/// Key, name, probability of a spike and its size in deviations of the noise.
-const SPIKES: [(&str, &str, f64, f64); 2] = [
-    ("frequent", "50 deviations in 1 % of the samples", 0.01, 50.0),
-    ("huge", "1000 deviations in 0.2 % of the samples", 0.002, 1000.0),
+/// Key, name, probability of a spike, its size in deviations of the noise, and whether all are of one sign: what is not found of those is a bias.
+const SPIKES: [(&str, &str, f64, f64, bool); 3] = [
+    ("frequent", "50 deviations in 1 % of the samples", 0.01, 50.0, true),
+    ("either-sign", "50 deviations of either sign in 1 % of the samples", 0.01, 50.0, false),
+    ("huge", "1000 deviations in 0.2 % of the samples", 0.002, 1000.0, true),
 ];
 
 /// A trial: its seed, and what spikes of each kind do after five minutes.
@@ -29,18 +30,18 @@ fn measure(trial: &Trial) -> Result<Measured, Fault> {
     if trial.quick {
         return Ok(None);
     }
-    let track = |probability, size| {
+    let track = |probability, size, one_sided| {
         let configuration = presets::configuration("idam_outliers", trial.seed)?.with(|c| {
             c.run.duration_s = Some(DURATION_S);
             let outliers = &mut c.areas[0].simulation.outliers;
-            (outliers.probability, outliers.size) = (probability, size);
+            (outliers.probability, outliers.size, outliers.one_sided) = (probability, size, one_sided);
         });
         on(&configuration)
     };
-    let clean = track(0.0, 0.0)?;
+    let clean = track(0.0, 0.0, true)?;
     let mut pairs = [None; SPIKES.len()];
-    for (pair, (.., probability, size)) in pairs.iter_mut().zip(SPIKES) {
-        *pair = Paired::of(track(probability, size)?.over(EARLY_S..), clean.over(EARLY_S..));
+    for (pair, (.., probability, size, one_sided)) in pairs.iter_mut().zip(SPIKES) {
+        *pair = Paired::of(track(probability, size, one_sided)?.over(EARLY_S..), clean.over(EARLY_S..));
     }
     Ok(Some((trial.seed, pairs)))
 }
