@@ -11,6 +11,7 @@ pub mod filter;
 pub mod flexure;
 pub mod identify;
 pub mod matching;
+mod scatter;
 mod state;
 pub mod synchronise;
 

@@ -4,12 +4,11 @@
 //! itself needs the rest. Kalman's filter of the mode that was fitted to the whole says of each rate what could not be expected of it; where that is far too much
 //! the flexure has got a kick, whose later course is taken out of the rates with it.
 
-use super::onset::Noisy;
+use super::innovation::{Kalman, Noisy};
 use super::series::Series;
-use nalgebra::{Matrix3, RowVector3, Vector3};
+use crate::scatter::deviation;
+use nalgebra::Vector3;
 
-/// Median of the size of a normal variable over its deviation, inverted.
-const NORMAL_SCALE: f64 = 1.4826;
 /// A change of the rate by so many deviations is a blow; ten minutes without one have a larger change once in ten thousand times.
 const BLOW: f64 = 6.0;
 /// What is not expected by so many deviations is a kick, once there are blows.
@@ -21,16 +20,9 @@ const STEADY: usize = 200;
 
 /// Whether rates at equal distances about one axis have blows in them.
 fn has_blows(rates: &[f64]) -> bool {
-    let changes: Vec<f64> = rates.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let largest = changes.iter().fold(0.0, |largest: f64, change| largest.max(change.abs()));
-    largest > BLOW * scale(&changes)
-}
-
-/// Deviation of normal values, whatever a few of them are.
-fn scale(values: &[f64]) -> f64 {
-    let mut sizes: Vec<f64> = values.iter().map(|value| value.abs()).collect();
-    let middle = sizes.len() / 2;
-    if sizes.is_empty() { 0.0 } else { NORMAL_SCALE * *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    let mut changes: Vec<f64> = rates.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    let largest = changes.iter().copied().fold(0.0, f64::max);
+    largest > BLOW * deviation(&mut changes)
 }
 
 /// Rates without their blows; `None` if there are none, or nothing can be fitted.
@@ -43,47 +35,15 @@ pub fn without_blows(series: &Series) -> Option<Vec<f64>> {
     calm.iter().all(|rate| rate.is_finite()).then_some(calm)
 }
 
-/// Angle, rate and the angle a step before; the mean rate of the step is seen.
-#[derive(Clone, Debug)]
-struct Kalman {
-    transition: Matrix3<f64>,
-    drive: Matrix3<f64>,
-    noise: f64,
-    start: Matrix3<f64>,
-    seen: RowVector3<f64>,
-}
-
 impl Kalman {
-    fn new(model: &Noisy, step_s: f64) -> Self {
-        let (transition, drive) = model.motion(step_s);
-        Self { transition, drive, noise: model.noise, start: model.start(), seen: Noisy::seen(step_s) }
-    }
-
     /// The same with no more driving noise than there is between the blows of rates.
     fn between(self, rates: &[f64]) -> Self {
         let (news, _) = self.run(rates, f64::INFINITY);
+        let mut sizes: Vec<f64> = news.iter().map(|news| news.abs()).collect();
         // of what is not expected the white noise is a part that blows do not raise
-        let (seen, steady) = (scale(&news).powi(2), self.steady());
+        let (seen, steady) = (deviation(&mut sizes).powi(2), self.steady());
         let calmer = ((seen * steady - self.noise) / (steady - self.noise)).clamp(LEAST, 1.0);
-        Self { drive: self.drive * calmer, start: self.start * calmer, ..self }
-    }
-
-    /// The covariance carried on by a step.
-    fn carried(&self, p: &Matrix3<f64>) -> Matrix3<f64> {
-        self.transition * p * self.transition.transpose() + self.drive
-    }
-
-    fn variance(&self, p: &Matrix3<f64>) -> f64 {
-        (self.seen * p * self.seen.transpose())[0] + self.noise
-    }
-
-    fn gain(&self, p: &Matrix3<f64>) -> Vector3<f64> {
-        p * self.seen.transpose() / self.variance(p)
-    }
-
-    fn updated(&self, p: &Matrix3<f64>) -> Matrix3<f64> {
-        let gain = self.gain(p);
-        p - gain * gain.transpose() * self.variance(p)
+        self.driven(calmer)
     }
 
     /// Variance of what is not expected of a rate, after a while.
@@ -102,18 +62,17 @@ impl Kalman {
         let step = |rate: &f64| {
             (state, kicked) = (self.transition * state, self.transition * kicked);
             (p, calm) = (self.carried(&p), self.carried(&calm));
-            let off = rate - (self.seen * state)[0];
+            let off = rate - self.rate(&state);
             let news = off / self.variance(&p).sqrt();
             if news.abs() > limit {
-                let part = (self.seen * self.drive * self.seen.transpose())[0];
-                p += self.drive * ((off * off - self.variance(&p)) / part);
+                p += self.drive * ((off * off - self.variance(&p)) / self.share(&self.drive));
                 kicked += self.gain(&p) * off;
             } else {
                 kicked += (self.gain(&p) - self.gain(&calm)) * off;
             }
             state += self.gain(&p) * off;
             (p, calm) = (self.updated(&p), self.updated(&calm));
-            (news, rate - (self.seen * kicked)[0])
+            (news, rate - self.rate(&kicked))
         };
         rates.iter().map(step).unzip()
     }

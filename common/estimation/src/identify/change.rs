@@ -7,7 +7,8 @@
 //!
 //! A sea that slams is never the same for two minutes, though the hull is. So a part must differ far more than the parts before it differ from each other.
 
-use super::onset::{Noisy, onset};
+use super::innovation::Noisy;
+use super::onset::onset;
 use super::series::{Kind, Series};
 use super::whittle::{Fitted, departure, fitted};
 

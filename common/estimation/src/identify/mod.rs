@@ -10,6 +10,7 @@
 //! | relative rate of the window | [`chain`] |
 //! | whether the flexure has become another, and when | [`change`], `onset` |
 //! | rates without the blows of a sea that hits the hull | `blows` |
+//! | what each rate says that those before it did not | `innovation` |
 //! | one axis by a method | [`method`] |
 //! | what a filter may safely use | [`safety`] |
 //! | all together as an [`Identifier`](crate::Identifier) | [`Windowed`] |
@@ -35,6 +36,7 @@ pub mod dictionary;
 pub mod expectation;
 mod fixed;
 pub mod gaussian;
+mod innovation;
 pub mod lagged;
 pub mod matrix_pencil;
 pub mod method;

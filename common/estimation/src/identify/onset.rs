@@ -2,66 +2,23 @@
 //!
 //! A mode is driven by noise all the time, so that every rate says something of its density: where that becomes half or twice as large a few seconds show when.
 
-use super::series::Series;
-use super::whittle;
-use crate::flexure::Flexure;
-use nalgebra::{Matrix3, RowVector3, Vector3};
+use super::innovation::{Kalman, Noisy};
+use nalgebra::Vector3;
 use std::f64::consts::TAU;
 
-/// A mode, and the white noise of its rates.
-#[derive(Clone, Copy, Debug)]
-pub struct Noisy {
-    /// The mode.
-    pub mode: Flexure,
-    /// Variance of each rate's noise, rad^2/s^2.
-    pub noise: f64,
-}
-
-impl Noisy {
-    /// The most probable one of a series of rates; `None` if nothing can be fitted.
-    pub fn fitted(series: &Series) -> Option<Self> {
-        let found = whittle::fitted(series)?;
-        Some(Self { mode: found.mode()?, noise: found.noise() / series.step_s })
-    }
-
-    /// Transition of angle, rate and the angle a step before over a step, and the covariance that it adds.
-    pub fn motion(&self, step_s: f64) -> (Matrix3<f64>, Matrix3<f64>) {
-        let (mut transition, mut noise) = (Matrix3::zeros(), Matrix3::zeros());
-        self.mode.place(step_s, 0, 1, &mut transition, &mut noise);
-        transition[(2, 0)] = 1.0;
-        (transition, noise)
-    }
-
-    /// Their covariance before the first step.
-    pub fn start(&self) -> Matrix3<f64> {
-        let mut p = Matrix3::zeros();
-        self.mode.place_stationary(0, 1, &mut p);
-        p
-    }
-
-    /// What a step's mean rate shows of them.
-    pub fn seen(step_s: f64) -> RowVector3<f64> {
-        RowVector3::new(1.0, 0.0, -1.0) / step_s
-    }
-
-    /// Minus the logarithm of the density of each rate (rad/s, mean over the `step_s` before it), given those before: Kalman's filter of angle,
-    /// rate and the angle a step before.
-    fn surprises(&self, rates: &[f64], step_s: f64) -> Vec<f64> {
-        let ((transition, noise), seen) = (self.motion(step_s), Self::seen(step_s));
-        let mut p = self.start();
-        let mut state = Vector3::zeros();
-        let surprise = |rate: &f64| {
-            state = transition * state;
-            p = transition * p * transition.transpose() + noise;
-            let off = rate - (seen * state)[0];
-            let across = p * seen.transpose();
-            let variance = (seen * across)[0] + self.noise;
-            state += across * (off / variance);
-            p -= across * across.transpose() / variance;
-            0.5 * ((TAU * variance).ln() + off * off / variance)
-        };
-        rates.iter().map(surprise).collect()
-    }
+/// Minus the logarithm of the density of each rate (rad/s, mean over the `step_s` before it), given those before.
+fn surprises(model: &Noisy, rates: &[f64], step_s: f64) -> Vec<f64> {
+    let kalman = Kalman::new(model, step_s);
+    let (mut state, mut p) = (Vector3::zeros(), kalman.start);
+    let surprise = |rate: &f64| {
+        state = kalman.transition * state;
+        p = kalman.carried(&p);
+        let (off, variance) = (rate - kalman.rate(&state), kalman.variance(&p));
+        state += kalman.gain(&p) * off;
+        p = kalman.updated(&p);
+        0.5 * ((TAU * variance).ln() + off * off / variance)
+    };
+    rates.iter().map(surprise).collect()
 }
 
 /// The place from which on a second model explains the rates about each axis, at least `least` before their end. Each axis: rates, the model of the beginning,
@@ -70,8 +27,8 @@ pub fn onset(axes: &[(&[f64], Noisy, Noisy); 3], step_s: f64, least: usize) -> u
     let count = axes[0].0.len();
     let mut gains = vec![0.0; count];
     for (rates, before, after) in axes {
-        let surprises = before.surprises(rates, step_s).into_iter().zip(after.surprises(rates, step_s));
-        gains.iter_mut().zip(surprises).for_each(|(gain, (before, after))| *gain += before - after);
+        let [before, after] = [before, after].map(|model| surprises(model, rates, step_s));
+        gains.iter_mut().zip(before.iter().zip(&after)).for_each(|(gain, (before, after))| *gain += before - after);
     }
     let (mut sum, mut best) = (0.0, (f64::NEG_INFINITY, 0));
     for place in (0..count).rev() {
@@ -86,6 +43,7 @@ pub fn onset(axes: &[(&[f64], Noisy, Noisy); 3], step_s: f64, least: usize) -> u
 #[cfg(test)]
 pub mod tests {
     use super::*;
+    use crate::flexure::Flexure;
     use nalgebra::Vector2;
     use rand::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
@@ -142,7 +100,7 @@ pub mod tests {
     #[test]
     fn the_squares_of_what_the_right_model_did_not_expect_are_what_it_says() {
         let rates = rates(&[(CALM, 20_000)], 1);
-        let mean = |model: Noisy| model.surprises(&rates, STEP_S)[100..].iter().sum::<f64>() / 19_900.0;
+        let mean = |model: Noisy| surprises(&model, &rates, STEP_S)[100..].iter().sum::<f64>() / 19_900.0;
         for other in [
             LIVELY,
             Noisy { noise: 2e-8, ..CALM },

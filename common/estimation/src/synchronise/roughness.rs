@@ -1,7 +1,6 @@
 //! How far a channel's values lie from a smooth line by themselves: the scale of the spike test.
 
-/// From the median of absolute values to the standard deviation of a normal variable.
-const NORMAL: f64 = 1.4826;
+use crate::scatter::deviation;
 
 /// Before the first block is whole, so many values give a first scale, and each doubling a better one: a spike of the first seconds stands at the beginning of
 /// all that is integrated. Only of who was there from the block's beginning on, so that who joins a little later is judged as who joined before.
@@ -56,7 +55,7 @@ impl Roughness {
 
     /// The scale of the values so far.
     fn measure(&mut self) {
-        let scale = Scale { second: NORMAL * median(&mut self.second), fourth: NORMAL * median(&mut self.fourth) };
+        let scale = Scale { second: deviation(&mut self.second), fourth: deviation(&mut self.fourth) };
         self.scale = (scale.second > 0.0 && scale.fourth > 0.0).then_some(scale);
     }
 
@@ -76,10 +75,4 @@ impl Roughness {
         self.fourth.clear();
         (self.scale, self.beginning) = (None, true);
     }
-}
-
-/// The upper median of at least one value; sorts only as far as that needs.
-fn median(values: &mut [f64]) -> f64 {
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
