@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt::{self, Write};
 
 /// The program and the layout of its states; whoever changes what an estimator does with the same state changes the number.
-const FORMAT: &str = concat!("deckflex ", env!("CARGO_PKG_VERSION"), ", states 1");
+const FORMAT: &str = concat!("deckflex ", env!("CARGO_PKG_VERSION"), ", states 2");
 
 /// A copy of a state, which gives its bytes wherever there is time for it.
 pub type Frozen = Box<dyn FnOnce() -> Vec<u8> + Send>;

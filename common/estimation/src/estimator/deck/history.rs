@@ -20,7 +20,20 @@ const SPARE: usize = 256;
 /// So many increments are run over at each pair.
 pub const AT_ONCE: usize = 5;
 
-/// The increments of the epoch, oldest first.
+/// Where a history begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+enum Beginning {
+    /// With the epoch, where a filter starts anew with every set of parameters.
+    Epoch,
+    /// Where the flexure became another one, ns, once the filter at the beginning has come up to there.
+    Change(i64),
+    /// Some minutes behind the live filter; the flexure in force is older.
+    Behind,
+    /// Nowhere: what comes does not join what came before, and is not kept.
+    Nowhere,
+}
+
+/// The increments since the beginning, oldest first.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct History {
     steps: VecDeque<Increment>,
@@ -28,13 +41,9 @@ pub struct History {
     begin_ns: i64,
     period_s: f64,
     length_s: f64,
-    /// Where the flexure in force begins, ns; `None` while the beginning follows the end.
-    anchor_ns: Option<i64>,
+    beginning: Beginning,
     /// The filter at the beginning; `None` before any has started.
     base: Option<Box<Running>>,
-    /// Whether it begins with the epoch, where a filter starts anew with every set of parameters.
-    first: bool,
-    ended: bool,
 }
 
 impl History {
@@ -46,17 +55,15 @@ impl History {
             begin_ns: 0,
             period_s,
             length_s: 0.0,
-            anchor_ns: None,
+            beginning: Beginning::Epoch,
             base: None,
-            first: true,
-            ended: false,
         }
     }
 
     /// Begins anew with the pair at `begin_ns`, where a flexure begins.
     pub fn restart(&mut self, begin_ns: i64) {
         self.end();
-        (self.begin_ns, self.anchor_ns, self.first, self.ended) = (begin_ns, Some(begin_ns), true, false);
+        (self.begin_ns, self.beginning) = (begin_ns, Beginning::Epoch);
     }
 
     /// Begins anew beside a live filter, whose flexure began before.
@@ -69,12 +76,12 @@ impl History {
     /// Takes no more: what comes does not join what is here.
     pub fn end(&mut self) {
         self.steps.clear();
-        (self.joining, self.base, self.anchor_ns, self.length_s, self.ended) = (None, None, None, 0.0, true);
+        (self.joining, self.base, self.length_s, self.beginning) = (None, None, 0.0, Beginning::Nowhere);
     }
 
     /// Whether it reaches up to now.
     pub fn is_complete(&self) -> bool {
-        !self.ended
+        self.beginning != Beginning::Nowhere
     }
 
     /// The instant at which it begins, ns.
@@ -88,33 +95,33 @@ impl History {
     }
 
     /// Where the flexure in force begins, ns, if the history begins there.
-    pub fn anchor_ns(&self) -> Option<i64> {
-        self.anchor_ns.filter(|&anchor_ns| self.steps.front().is_none_or(|first| first.time_ns > anchor_ns))
-    }
-
-    /// Whether it begins with the epoch.
-    pub fn is_first(&self) -> bool {
-        self.first
+    pub fn flexure_from_ns(&self) -> Option<i64> {
+        let is_behind = |time_ns| self.steps.front().is_some_and(|first| first.time_ns <= time_ns);
+        match self.beginning {
+            Beginning::Epoch => Some(self.begin_ns),
+            Beginning::Change(time_ns) => Some(time_ns).filter(|&time_ns| !is_behind(time_ns)),
+            Beginning::Behind | Beginning::Nowhere => None,
+        }
     }
 
     /// The filter at its beginning; `None` where one starts anew with every set of parameters.
     pub fn base(&self) -> Option<&Running> {
-        self.base.as_deref().filter(|_| !self.first)
+        self.base.as_deref().filter(|_| self.beginning != Beginning::Epoch)
     }
 
-    /// Replaces the filter at its beginning.
+    /// Places a filter that starts there at its beginning.
     pub fn set_base(&mut self, running: &Running) {
         self.base = Some(Box::new(running.clone()));
     }
 
     /// The flexure has become another one at an instant, from which on the increments are kept.
     pub fn anchor(&mut self, time_ns: i64) {
-        (self.anchor_ns, self.first) = (Some(time_ns.max(self.begin_ns)), false);
+        self.beginning = Beginning::Change(time_ns.max(self.begin_ns));
     }
 
     /// The parameters to come say nothing more of the beginning, which follows the end from now on.
     pub fn release(&mut self) {
-        (self.anchor_ns, self.first) = (None, false);
+        self.beginning = Beginning::Behind;
     }
 
     /// The increments, oldest first.
@@ -124,7 +131,7 @@ impl History {
 
     /// Takes in what both units felt; `true` when that ends an increment of the history.
     pub fn take(&mut self, step: &Increment) -> bool {
-        if self.ended {
+        if !self.is_complete() {
             return false;
         }
         let joined = self.joining.take().map_or(*step, |joining| joining.then(step));
@@ -140,22 +147,17 @@ impl History {
                 None => self.end(),
             }
         }
-        !self.ended
+        self.is_complete()
     }
 
     /// Lets the filter at the beginning come nearer to where it should stand; by the model in force unless another flexure is ahead of it.
     pub fn advance(&mut self, hull: Hull, settings: &DeckSettings) {
         for _ in 0..AT_ONCE {
             let (Some(base), Some(first)) = (&mut self.base, self.steps.front()) else { return };
-            let is_due = match self.anchor_ns {
-                Some(anchor_ns) => first.time_ns <= anchor_ns,
-                None => self.length_s > BEHIND_S || self.steps.len() >= ROOM,
-            };
-            if !is_due {
-                return;
-            }
-            if self.anchor_ns.is_none() {
-                base.set_flexure(hull);
+            match self.beginning {
+                Beginning::Change(time_ns) if first.time_ns <= time_ns => {}
+                Beginning::Behind if self.length_s > BEHIND_S || self.steps.len() >= ROOM => base.set_flexure(hull),
+                _ => return,
             }
             (self.begin_ns, self.length_s) = (first.time_ns, self.length_s - first.time_s);
             if base.step(first.time_ns, Some(first), settings).is_none() {

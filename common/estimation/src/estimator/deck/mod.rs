@@ -1,8 +1,9 @@
 //! The fast stage by the project's own model: registration by motion, then the filter of [`crate::matching::deck`], with an output at every pair.
 //!
 //! What both units felt in the first minutes is kept, and later what they felt since the flexure became another one, or in the last minutes. Whenever better
-//! parameters come, a second filter runs over all of it beside the live one, some increments at each pair, and takes over where it has caught up. When it starts, how fast it runs and where it takes over follow from data time and
-//! the count of pairs alone, so that processes and a loop over a file give the same bits, and no state ever passes between processes.
+//! parameters come, a second filter runs over all of it beside the live one, some increments at each pair, and takes over where it has caught up. When it
+//! starts, how fast it runs and where it takes over follow from data time and the count of pairs alone, so that processes and a loop over a file give the
+//! same bits, and no state ever passes between processes.
 
 mod history;
 mod origin;

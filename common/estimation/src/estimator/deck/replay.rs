@@ -27,11 +27,16 @@ impl DeckEstimator {
         let Some(origin) = &self.state.origin else { return };
         let hull = self.hull(origin);
         let begin_ns = self.state.history.begin_ns();
-        let anew = || Running::new(origin.begin(&self.settings, hull), begin_ns, self.settings.period_s());
-        let mut running = self.state.history.base().cloned().unwrap_or_else(anew);
-        if self.settings.replay {
-            self.state.history.set_base(&running);
+        let running = if let Some(base) = self.state.history.base() {
+            let mut running = base.clone();
             running.set_flexure(hull);
+            running
+        } else {
+            let running = Running::new(origin.begin(&self.settings, hull), begin_ns, self.settings.period_s());
+            self.state.history.set_base(&running);
+            running
+        };
+        if self.settings.replay {
             self.state.shadow = Some(Shadow { running: Box::new(running), done: 0 });
         } else {
             self.state.history.end();
@@ -54,9 +59,9 @@ impl DeckEstimator {
         if let Some(changed_ns) = self.state.adoption.take_change() {
             self.state.history.anchor(changed_ns);
             self.state.again_s = 0.0;
-        } else if let Some(anchor_ns) = self.state.history.anchor_ns() {
+        } else if let Some(from_ns) = self.state.history.flexure_from_ns() {
             // what comes before the first solution is in the windows or not, as the identifier likes
-            let first_ns = anchor_ns.max(if self.state.history.is_first() { self.state.started_ns } else { i64::MIN });
+            let first_ns = from_ns.max(self.state.started_ns);
             let begin_ns = self.state.adoption.window_begin_ns().unwrap_or(i64::MIN);
             if unit::seconds(begin_ns.saturating_sub(first_ns)) > LATEST_WINDOW_S {
                 self.state.history.release();
@@ -73,7 +78,7 @@ impl DeckEstimator {
         self.place_history();
         let State { adoption, history, live, shadow, .. } = &self.state;
         let news = adoption.id() != self.state.replayed_id && history.length_s() >= self.state.again_s;
-        if news && live.is_some() && shadow.is_none() && history.anchor_ns().is_some() {
+        if news && live.is_some() && shadow.is_none() && history.flexure_from_ns().is_some() {
             self.run_again();
         }
         if !self.state.history.is_complete() && self.state.live.is_some() {
