@@ -116,7 +116,7 @@ fn the_own_estimator_goes_on_from_its_state_to_the_bit() {
     copied.sort();
     println!("a copy took {:?}, the longest {:?}", copied[copied.len() / 2], copied[copied.len() - 1]);
     let largest = states.iter().map(|(_, state)| state.len()).max().unwrap();
-    assert!(largest < 3_000_000 && last.1.len() < 1_500_000, "{largest} and {} bytes", last.1.len());
+    assert!(largest < 2_000_000 && last.1.len() < 900_000, "{largest} and {} bytes", last.1.len());
     println!("{largest} bytes at most, {} in the end", last.1.len());
     for (from, state) in &states {
         let mut again = lane::estimator(&configuration, 0);

@@ -361,15 +361,17 @@ mod tests {
     #[test]
     fn a_deck_that_moves_is_not_taken_for_still() {
         let moving = Moving(800.0, 7200.0);
-        let [brief, long] = [1190.0, 3600.0].map(|until_s| seen(until_s, moving));
-        assert!(brief.refuted > 0 && long.refuted <= 4, "{} {}", brief.refuted, long.refuted);
-        assert!(long.said.is_some());
-        for Seen { said, excess, .. } in [brief, long] {
-            let said = said.into_iter();
-            for (axis, (error, covariance)) in said.flat_map(|said| [0, 1, 2].map(|axis| (axis, said))) {
+        // before it is refuted, just after, in the turn, and long after
+        let told = [800.0, 1190.0, 1400.0, 3600.0].map(|until_s| seen(until_s, moving));
+        assert_eq!(told.each_ref().map(|seen| seen.said.is_some()), [true, false, true, true]);
+        assert_eq!(told[0].refuted, 0);
+        assert!(told[1].refuted > 0 && told[3].refuted <= 4, "{} {}", told[1].refuted, told[3].refuted);
+        for Seen { said, excess, .. } in told {
+            assert_eq!(excess, 1.0);
+            let Some((error, covariance)) = said else { continue };
+            for axis in 0..3 {
                 assert!(error[axis].abs() < 2.5 * covariance[(axis, axis)].sqrt(), "{axis}: {error} {covariance}");
             }
-            assert_eq!(excess, 1.0);
         }
     }
 
