@@ -6,15 +6,20 @@ use super::method::{self, run_blind};
 use super::paired::{Paired, interval, of_one, ratio};
 use crate::{Bound, Claim, Data, Fault, Findings, Published, Row, Study, Trial, Trials, presets};
 use pipeline::configuration::Configuration;
+use simulation::Outliers;
 
 const DURATION_S: f64 = 600.0;
 /// What the RMSE may be over that of the clean data.
 const LIMIT: f64 = 1.1;
-/// Key, name, probability of a spike, its size in deviations of the noise, and whether all are of one sign: what is not found of those is a bias.
-const SPIKES: [(&str, &str, f64, f64, bool); 3] = [
-    ("frequent", "50 deviations in 1 % of the samples", 0.01, 50.0, true),
-    ("either-sign", "50 deviations of either sign in 1 % of the samples", 0.01, 50.0, false),
-    ("huge", "1000 deviations in 0.2 % of the samples", 0.002, 1000.0, true),
+/// Key, name and what they are. What is not found of those of one sign is a bias.
+const SPIKES: [(&str, &str, Outliers); 3] = [
+    ("frequent", "50 deviations in 1 % of the samples", Outliers { probability: 0.01, size: 50.0, one_sided: true }),
+    (
+        "either-sign",
+        "50 deviations of either sign in 1 % of the samples",
+        Outliers { probability: 0.01, size: 50.0, one_sided: false },
+    ),
+    ("huge", "1000 deviations in 0.2 % of the samples", Outliers { probability: 0.002, size: 1000.0, one_sided: true }),
 ];
 
 /// A trial: its seed, and what spikes of each kind do after five minutes.
@@ -30,18 +35,17 @@ fn measure(trial: &Trial) -> Result<Measured, Fault> {
     if trial.quick {
         return Ok(None);
     }
-    let track = |probability, size, one_sided| {
+    let track = |outliers| {
         let configuration = presets::configuration("idam_outliers", trial.seed)?.with(|c| {
             c.run.duration_s = Some(DURATION_S);
-            let outliers = &mut c.areas[0].simulation.outliers;
-            (outliers.probability, outliers.size, outliers.one_sided) = (probability, size, one_sided);
+            c.areas[0].simulation.outliers = outliers;
         });
         on(&configuration)
     };
-    let clean = track(0.0, 0.0, true)?;
+    let clean = track(Outliers::default())?;
     let mut pairs = [None; SPIKES.len()];
-    for (pair, (.., probability, size, one_sided)) in pairs.iter_mut().zip(SPIKES) {
-        *pair = Paired::of(track(probability, size, one_sided)?.over(EARLY_S..), clean.over(EARLY_S..));
+    for (pair, (.., outliers)) in pairs.iter_mut().zip(SPIKES) {
+        *pair = Paired::of(track(outliers)?.over(EARLY_S..), clean.over(EARLY_S..));
     }
     Ok(Some((trial.seed, pairs)))
 }
@@ -57,7 +61,7 @@ fn conclude(trials: &[Measured]) -> Findings {
 
 /// The ratios about each axis and over all, then the upper ends of their intervals.
 fn rows(trials: &[Measured], kind: usize) -> Vec<Row> {
-    let (key, name, ..) = SPIKES[kind];
+    let (key, name, _) = SPIKES[kind];
     let seen: Vec<(u64, Paired)> =
         trials.iter().flatten().filter_map(|(seed, pairs)| Some((*seed, pairs[kind]?))).collect();
     let pairs: Vec<Paired> = seen.iter().map(|(_, pair)| *pair).collect();
