@@ -9,6 +9,7 @@
 
 mod channel;
 mod interpolation;
+mod joint;
 mod roughness;
 mod spike;
 mod stream;

@@ -24,6 +24,11 @@ pub(super) struct Scale {
 }
 
 impl Scale {
+    /// Standard deviation with which a spike is seen beside its neighbours.
+    pub fn spike(&self) -> f64 {
+        if self.bends(2.0, 6.0) { self.fourth / 6.0 } else { self.second / 2.0 }
+    }
+
     /// Whether the motion's own bend hides more than a higher order's noise: swell sampled slowly.
     pub fn bends(&self, second: f64, fourth: f64) -> bool {
         self.fourth / fourth < self.second / second

@@ -4,21 +4,22 @@
 //! differences over the last whole block, so that noise, flexure and swell set it by themselves. A spike leaves the line and returns
 //! to it. A step does not return: the deck's rate of bending steps in a slam, and must pass. An ordinary sample is
 //! handed on at once; one that leaves the line of its past waits for the two after it. Spikes too small to be told without them are
-//! found when it is too late, and then let every sample of the unit wait for a while.
+//! found when it is too late, and then let every sample of the unit wait for a while, in which all channels are judged [together](super::joint) too.
 //!
 //! Blocks begin at fixed sample numbers, so that a unit that is joined a few samples later is judged alike.
 
+use super::joint::Joint;
 use super::roughness::{Roughness, Scale};
 use frames::unit;
 use messages::{Flags, ImuSample};
 use std::collections::VecDeque;
 
 /// Values kept of each channel: enough for a fourth difference that ends at the sample that is judged.
-const ROWS: usize = 7;
+pub(super) const ROWS: usize = 7;
 /// Samples after the one that is judged.
-const AHEAD: usize = 2;
+pub(super) const AHEAD: usize = 2;
 /// The row that is judged.
-const CENTRE: usize = ROWS - 1 - AHEAD;
+pub(super) const CENTRE: usize = ROWS - 1 - AHEAD;
 /// A sample waits if it is so many standard deviations off the line of its past.
 const SUSPICIOUS: f64 = 4.0;
 /// A spike is off the line of its past and off that of its future by at least so much of the excess.
@@ -71,6 +72,8 @@ pub(super) struct SpikeTest {
     filled: usize,
     waiting: VecDeque<Judged>,
     roughness: [Roughness; 6],
+    /// Learns while every sample waits.
+    joint: Joint,
     block: u64,
     last: Option<(u64, i64)>,
     /// Whether the block began while the unit was there.
@@ -88,6 +91,7 @@ impl SpikeTest {
             filled: 0,
             waiting: VecDeque::with_capacity(ROWS),
             roughness: std::array::from_fn(|_| Roughness::new(block as usize)),
+            joint: Joint::new(),
             block,
             last: None,
             whole: false,
@@ -129,6 +133,7 @@ impl SpikeTest {
     /// Lets go what waits as it is; nothing is compared across this point.
     pub fn release(&mut self) {
         self.waiting.iter_mut().for_each(|judged| judged.decided = true);
+        self.joint.interrupt();
         self.filled = 0;
     }
 
@@ -142,6 +147,7 @@ impl SpikeTest {
             }
             if number <= last || hole_ns > self.told.bridge_ns || hole_ns <= -self.told.interval_ns {
                 self.roughness.iter_mut().for_each(Roughness::clear);
+                self.joint = Joint::new();
                 (self.whole, self.found, self.watch) = (false, 0, 0);
             } else if number / self.block != last / self.block {
                 self.end_block();
@@ -158,6 +164,12 @@ impl SpikeTest {
         self.roughness.iter_mut().for_each(|roughness| roughness.end_block(least));
         self.watch = if self.found >= MANY { WATCH } else { self.watch.saturating_sub(1) };
         self.found = 0;
+        if self.watch > 0 {
+            let alone = self.roughness.each_ref().map(|roughness| roughness.scale().map(|scale| scale.spike()));
+            self.joint.end_block(&alone);
+        } else {
+            self.joint = Joint::new();
+        }
     }
 
     /// Whether the first sample that waits, none before it waiting, has to wait for those after it.
@@ -186,12 +198,11 @@ impl SpikeTest {
         let mut excess = [0.0; 6];
         let (mut flags, mut left) = (Flags::empty(), 0.0f64);
         let waits = self.waiting.len() > AHEAD;
-        for channel in 0..6 {
+        let found = self.together().unwrap_or_else(|| std::array::from_fn(|channel| self.alone(channel)));
+        for (channel, found) in found.into_iter().enumerate() {
             let taps = self.taps(channel);
-            let whole = self.filled == ROWS;
-            let found = self.roughness[channel].scale().and_then(|scale| taps.spike(scale, self.told.threshold, whole));
             self.roughness[channel].add(taps.second(), taps.fourth(), self.whole);
-            let Some(found) = found.filter(|found| channel < 3 || !self.explains(found.excess)) else { continue };
+            let Some(found) = found else { continue };
             excess[channel] = found.excess;
             flags |= Flags::SPIKE;
             if channel < 3 {
@@ -214,6 +225,22 @@ impl SpikeTest {
             }
             (0..6).for_each(|channel| self.rows[CENTRE][channel] -= excess[channel]);
         }
+        if self.watch > 0 {
+            self.joint.take(&self.rows[CENTRE], !flags.is_empty());
+        }
+    }
+
+    /// The spikes of the sample that is judged by all channels together; `None` where they cannot tell.
+    fn together(&mut self) -> Option<[Option<Found>; 6]> {
+        let is_seen = self.watch > 0 && self.filled == ROWS;
+        is_seen.then(|| self.joint.spikes(&self.rows, self.told.threshold)).flatten()
+    }
+
+    /// The spike of a channel of the sample that is judged by itself.
+    fn alone(&self, channel: usize) -> Option<Found> {
+        let (taps, scale) = (self.taps(channel), self.roughness[channel].scale()?);
+        let found = taps.spike(scale, self.told.threshold, self.filled == ROWS)?;
+        (channel < 3 || !self.explains(found.excess)).then_some(found)
     }
 
     fn taps(&self, channel: usize) -> Taps {
@@ -233,9 +260,9 @@ impl SpikeTest {
 struct Taps([f64; ROWS]);
 
 /// A spike, with the standard deviation of what is left when it is taken off.
-struct Found {
-    excess: f64,
-    sigma: f64,
+pub(super) struct Found {
+    pub excess: f64,
+    pub sigma: f64,
 }
 
 impl Taps {
