@@ -13,11 +13,15 @@ pub(super) fn conclude(scenario: &Scenario, trials: &[Option<Measured>]) -> Find
     let trials: Vec<&Measured> = trials.iter().flatten().collect();
     let mut rows = Vec::new();
     for place in (0..scenario.rivals.len()).filter(|_| !trials.is_empty()) {
-        let rival = &scenario.rivals[place];
-        let pairs: Vec<Paired> = trials.iter().filter_map(|trial| trial.rivals[place].as_it_is).collect();
+        let (rival, beside) = (&scenario.rivals[place], trials.iter().map(|trial| &trial.rivals[place]));
+        let pairs: Vec<Paired> = beside.clone().filter_map(|beside| beside.as_it_is).collect();
         rows.extend(rival_rows(scenario, (rival.id.into(), rival.name.into()), &pairs));
+        // what another method takes for known, the data do not tell: no more than this can be done without it
         if let Some(knowledge) = rival.knowledge() {
-            let pairs: Vec<Paired> = trials.iter().filter_map(|trial| trial.rivals[place].as_knowing).collect();
+            let pairs: Vec<Paired> = beside.clone().filter_map(|beside| beside.as_true).collect();
+            let name = format!("{}, ours told the true flexure", rival.name);
+            rows.extend(rival_rows(scenario, (format!("{}-bound", rival.id), name), &pairs));
+            let pairs: Vec<Paired> = beside.filter_map(|beside| beside.as_knowing).collect();
             let name = format!("{}, ours told as it is that {}", rival.name, knowledge.what);
             rows.extend(rival_rows(scenario, (format!("{}-knowing", rival.id), name), &pairs));
         }

@@ -37,6 +37,8 @@ pub(super) struct Beside {
     pub as_it_is: Option<Paired>,
     /// Told what the other takes for known, if there is anything.
     pub as_knowing: Option<Paired>,
+    /// Told the true flexure, and nothing of what the other takes for known.
+    pub as_true: Option<Paired>,
 }
 
 /// What a method says of its own error, against that error.
@@ -99,7 +101,8 @@ pub(super) fn measure(scenario: &Scenario, trial: &Trial) -> Result<Option<Measu
         let other = run_blind(&rival.on(&configuration)?, &data);
         let told_so = |knowledge: Knowledge| knowing.iter().find(|(what, _)| *what == knowledge.what);
         let as_knowing = rival.knowledge().and_then(told_so).and_then(|(_, track)| paired(track, &other)[0]);
-        Ok(Beside { as_it_is: paired(&ours, &other)[0], as_knowing })
+        let [as_it_is, as_true] = [&ours, &truth].map(|track| paired(track, &other)[0]);
+        Ok(Beside { as_it_is, as_knowing, as_true })
     };
     Ok(Some(Measured {
         seed: trial.seed,
