@@ -3,10 +3,12 @@
 //! Each round is 10 s of the demonstration's data, and rounds count from the first in which the identifier's window is full.
 #![allow(clippy::print_stdout)]
 
-use messages::{ImuPair, Solution};
+use estimation::synchronise::Synchroniser;
+use messages::{Flags, ImuPair, Solution};
 use pipeline::configuration::Configuration;
 use pipeline::lane;
 use pipeline::source::{Batch, Source};
+use simulation::Outliers;
 use std::error::Error;
 use std::hint::black_box;
 use std::path::Path;
@@ -40,6 +42,39 @@ impl Cost {
     }
 }
 
+/// Takes the samples of all batches; how many that is.
+fn synchronised(synchroniser: &mut Synchroniser, batches: &[Batch], pairs: &mut Vec<ImuPair>) -> usize {
+    pairs.clear();
+    for batch in batches {
+        batch.attitude.iter().for_each(|attitude| synchroniser.attitude(attitude));
+        synchroniser.main(&batch.main);
+        batch.sub.iter().for_each(|sample| synchroniser.sub(sample));
+        pairs.extend(std::iter::from_fn(|| synchroniser.pair()));
+    }
+    batches.iter().map(|batch| 1 + batch.sub.len()).sum()
+}
+
+/// A synchroniser whose sub unit spikes once in a hundred samples of each axis.
+fn spiking(demo: &Configuration) -> Result<(Cost, Vec<ImuPair>), Box<dyn Error>> {
+    let configuration = demo.with(|c| {
+        c.spike_threshold = 5.0;
+        c.areas[0].simulation.outliers = Outliers { probability: 0.01, size: 50.0, one_sided: true };
+    });
+    let mut source = Source::open(&configuration, 0)?;
+    let mut synchroniser = lane::synchroniser(&configuration, 0);
+    let (mut batches, mut pairs, mut cost) = (vec![Batch::default(); ROUND], Vec::new(), Cost::default());
+    for round in 0..2 * ROUNDS {
+        if !batches.iter_mut().all(|batch| source.next(batch)) {
+            return Err("the simulator has ended".into());
+        }
+        if round == ROUNDS {
+            cost.0.clear();
+        }
+        cost.measure(|| synchronised(&mut synchroniser, &batches, &mut pairs));
+    }
+    Ok((cost, pairs))
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("config/demo.toml");
     let mut configuration = Configuration::read(&path)?;
@@ -59,16 +94,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             [&mut simulate, &mut synchronise, &mut estimate, &mut identify].into_iter().for_each(|cost| cost.0.clear());
         }
         simulate.measure(|| batches.iter_mut().filter_map(|batch| source.next(batch).then_some(())).count());
-        pairs.clear();
-        synchronise.measure(|| {
-            for batch in &batches {
-                batch.attitude.iter().for_each(|attitude| synchroniser.attitude(attitude));
-                synchroniser.main(&batch.main);
-                batch.sub.iter().for_each(|sample| synchroniser.sub(sample));
-                pairs.extend(std::iter::from_fn(|| synchroniser.pair()));
-            }
-            batches.iter().map(|batch| 1 + batch.sub.len()).sum()
-        });
+        synchronise.measure(|| synchronised(&mut synchroniser, &batches, &mut pairs));
         solutions.clear();
         estimate.measure(|| {
             solutions.extend(pairs.iter().map(|pair| estimator.step(black_box(pair))));
@@ -82,11 +108,16 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
     }
+    let (mut spikes, mended) = spiking(&configuration)?;
+    if !mended.iter().any(|pair| pair.flags.contains(Flags::SPIKE)) {
+        return Err("no spike was found".into());
+    }
     let unit = estimate.median("the estimator")?;
     println!("{:<44} {:>12} {:>20}", "step", "median us", "to the pair's step");
     for (name, cost) in [
         ("estimator, a pair (mean with its filter)", &mut estimate),
         ("synchroniser, a sample", &mut synchronise),
+        ("synchroniser, a sample while a unit spikes", &mut spikes),
         ("simulator, an epoch", &mut simulate),
         ("identifier, a firing with a full window", &mut identify),
     ] {
