@@ -6,7 +6,7 @@
 //! data snooping, 1968). What few spikes do not explain is left as it is: a slam is felt by all channels together, but otherwise than usual.
 
 use super::spike::{AHEAD, CENTRE, Found, ROWS};
-use nalgebra::{DMatrix, Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 const CHANNELS: usize = 6;
 /// Second differences of all channels between the first row and the last.
@@ -33,29 +33,16 @@ const RIDGE: f64 = 1e-13;
 type Differences = SVector<f64, SIZE>;
 type Square = SMatrix<f64, SIZE, SIZE>;
 
-/// A value that may be a spike.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Place {
-    row: usize,
-    channel: usize,
-}
-
-impl Place {
-    /// All values that are not judged yet.
-    fn all() -> impl Iterator<Item = Self> {
-        (CENTRE..=CENTRE + AHEAD).flat_map(|row| (0..CHANNELS).map(move |channel| Self { row, channel }))
-    }
-
-    /// What a spike of one does to the differences.
-    fn reach(self) -> Differences {
-        let mut out = Differences::zeros();
-        let weights = [(self.row, 1.0), (self.row - 1, -2.0), (self.row - 2, 1.0)];
-        weights
-            .into_iter()
-            .filter(|(row, _)| *row < ROWS - 2)
-            .for_each(|(row, weight)| out[row * CHANNELS + self.channel] = weight);
-        out
-    }
+/// What a spike of one does to the differences. The places are those of the row that is judged, then those of the rows ahead.
+fn reach(place: usize) -> Differences {
+    let (row, channel) = (CENTRE + place / CHANNELS, place % CHANNELS);
+    let mut out = Differences::zeros();
+    let weights = [(row, 1.0), (row - 1, -2.0), (row - 2, 1.0)];
+    weights
+        .into_iter()
+        .filter(|(row, _)| *row < ROWS - 2)
+        .for_each(|(row, weight)| out[row * CHANNELS + channel] = weight);
+    out
 }
 
 fn differences(rows: &[[f64; CHANNELS]; ROWS]) -> Differences {
@@ -66,9 +53,8 @@ fn differences(rows: &[[f64; CHANNELS]; ROWS]) -> Differences {
 }
 
 /// What a spike at a place does.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Spike {
-    place: Place,
     /// The differences that one of size one makes.
     reach: Differences,
     /// By what the differences are weighted to see its size.
@@ -77,17 +63,45 @@ struct Spike {
     sigma: f64,
 }
 
+/// Some of the places, in their order, with the sizes of spikes there that explain differences best.
+#[derive(Clone, Copy, Debug, Default)]
+struct Taken {
+    places: [usize; MOST],
+    count: usize,
+    sizes: Vector3<f64>,
+    /// By how much the square sum of the differences is less without them.
+    gain: f64,
+}
+
+impl Taken {
+    fn places(&self) -> &[usize] {
+        &self.places[..self.count]
+    }
+
+    fn with(mut self, place: usize) -> Self {
+        self.places[self.count] = place;
+        self.count += 1;
+        self
+    }
+
+    /// Whether so many of them are of a channel that no more may be.
+    fn is_full(&self, channel: usize) -> bool {
+        self.places().iter().filter(|&&place| place % CHANNELS == channel).count() == IN_CHANNEL
+    }
+}
+
 /// What is known of the differences.
 #[derive(Debug)]
 struct Learnt {
     information: Square,
-    spikes: Vec<Spike>,
+    /// Channels that do not move have none.
+    spikes: [Option<Spike>; PLACES],
     /// What a spike at one place says of one at another.
-    normal: DMatrix<f64>,
+    normal: SMatrix<f64, PLACES, PLACES>,
 }
 
 impl Learnt {
-    /// `None` where the covariance has no inverse. Channels that do not move have no spikes.
+    /// `None` where the covariance has no inverse.
     fn of(covariance: &Square) -> Option<Self> {
         let scale = covariance.diagonal().map(|variance| if variance > 0.0 { variance.sqrt().recip() } else { 0.0 });
         let mut correlation = Square::from_fn(|i, j| covariance[(i, j)] * scale[i] * scale[j]);
@@ -96,21 +110,25 @@ impl Learnt {
         }
         let inverse = correlation.cholesky()?.inverse();
         let information = Square::from_fn(|i, j| inverse[(i, j)] * scale[i] * scale[j]);
-        let seen = |place: Place| {
-            let reach = place.reach();
+        let spikes = std::array::from_fn(|place| {
+            let reach = reach(place);
             let weights = information * reach;
             let seen = weights.dot(&reach);
-            (seen > 0.0).then(|| Spike { place, reach, weights, sigma: seen.sqrt().recip() })
-        };
-        let spikes: Vec<Spike> = Place::all().filter_map(seen).collect();
-        let normal = DMatrix::from_fn(spikes.len(), spikes.len(), |i, j| spikes[i].weights.dot(&spikes[j].reach));
+            (seen > 0.0).then(|| Spike { reach, weights, sigma: seen.sqrt().recip() })
+        });
+        let both = |i: usize, j: usize| Some(spikes[i].as_ref()?.weights.dot(&spikes[j].as_ref()?.reach));
+        let normal = SMatrix::from_fn(|i, j| both(i, j).unwrap_or(0.0));
         Some(Self { information, spikes, normal })
+    }
+
+    fn spikes(&self) -> impl Iterator<Item = (usize, &Spike)> {
+        self.spikes.iter().enumerate().filter_map(|(place, spike)| Some((place, spike.as_ref()?)))
     }
 
     /// Whether it sees smaller spikes of the row that is judged than a channel by itself.
     fn is_worth(&self, alone: &[Option<f64>; CHANNELS]) -> bool {
-        let mut centre = self.spikes.iter().filter(|spike| spike.place.row == CENTRE);
-        centre.any(|spike| alone[spike.place.channel].is_some_and(|alone| alone > WORTH * spike.sigma))
+        let mut judged = self.spikes().filter(|(place, _)| *place < CHANNELS);
+        judged.any(|(place, spike)| alone[place].is_some_and(|alone| alone > WORTH * spike.sigma))
     }
 
     /// Whether differences are no more unusual than they ever are.
@@ -118,66 +136,58 @@ impl Learnt {
         seen.dot(&(self.information * seen)) < LARGEST * SIZE as f64
     }
 
-    /// The sizes of spikes at some places that explain differences best, and by how much their square sum becomes less.
-    fn sizes(&self, taken: &[usize], weighted: &[f64; PLACES]) -> Option<(Vector3<f64>, f64)> {
+    /// The places with the sizes there; `None` where they cannot be told apart.
+    fn sized(&self, taken: Taken, weighted: &[f64; PLACES]) -> Option<Taken> {
         let (mut normal, mut right) = (Matrix3::identity(), Vector3::zeros());
-        for (i, &one) in taken.iter().enumerate() {
+        for (i, &one) in taken.places().iter().enumerate() {
             right[i] = weighted[one];
-            for (j, &other) in taken.iter().enumerate() {
+            for (j, &other) in taken.places().iter().enumerate() {
                 normal[(i, j)] = self.normal[(one, other)];
             }
         }
         let sizes = normal.lu().solve(&right)?;
-        Some((sizes, sizes.dot(&right)))
+        Some(Taken { sizes, gain: sizes.dot(&right), ..taken })
     }
 
-    /// Adds places to `taken` up to `count`, and keeps those that explain most.
-    fn search(&self, weighted: &[f64; PLACES], count: usize, taken: &mut Vec<usize>, best: &mut Best) {
-        if taken.len() == count {
-            if let Some((sizes, gain)) = self.sizes(taken, weighted).filter(|(_, gain)| *gain > best.gain) {
-                *best = Best { gain, taken: taken.clone(), sizes };
+    /// Adds places up to `count`, and keeps those that explain most.
+    fn search(&self, weighted: &[f64; PLACES], count: usize, taken: Taken, best: &mut Taken) {
+        if taken.count == count {
+            if let Some(taken) = self.sized(taken, weighted).filter(|taken| taken.gain > best.gain) {
+                *best = taken;
             }
             return;
         }
-        for next in taken.last().map_or(0, |last| last + 1)..self.spikes.len() {
-            let channel = self.spikes[next].place.channel;
-            if taken.iter().filter(|&&other| self.spikes[other].place.channel == channel).count() < IN_CHANNEL {
-                taken.push(next);
-                self.search(weighted, count, taken, best);
-                taken.pop();
-            }
+        let first = taken.places().last().map_or(0, |last| last + 1);
+        for (next, _) in self.spikes().filter(|(place, _)| *place >= first && !taken.is_full(place % CHANNELS)) {
+            self.search(weighted, count, taken.with(next), best);
         }
+    }
+
+    /// Whether what places leave of differences is no spike beyond `threshold` standard deviations at any other, and whether it is usual.
+    fn judged(&self, taken: &Taken, seen: &Differences, threshold: f64) -> (bool, bool) {
+        let spikes =
+            taken.places().iter().zip(&taken.sizes).filter_map(|(&place, size)| Some((self.spikes[place]?, size)));
+        let left = spikes.fold(*seen, |left, (spike, &size)| left - spike.reach * size);
+        let is_quiet = |(place, spike): (usize, &Spike)| {
+            taken.places().contains(&place) || (spike.weights.dot(&left) * spike.sigma).abs() < threshold
+        };
+        (self.spikes().all(is_quiet), self.describes(&left))
     }
 
     /// The fewest spikes that explain differences, none at all included, so that no other is beyond `threshold` standard deviations; `None` where few do
     /// not.
-    fn explained(&self, seen: &Differences, threshold: f64) -> Option<Vec<(Place, Found)>> {
-        let mut weighted = [0.0; PLACES];
-        weighted.iter_mut().zip(&self.spikes).for_each(|(out, spike)| *out = spike.weights.dot(seen));
-        let is_quiet = |left: &Differences, taken: &[usize]| {
-            let off = |spike: &Spike| (spike.weights.dot(left) * spike.sigma).abs();
-            self.spikes.iter().enumerate().all(|(i, spike)| taken.contains(&i) || off(spike) < threshold)
-        };
-        if is_quiet(seen, &[]) {
-            return self.describes(seen).then(Vec::new);
+    fn explained(&self, seen: &Differences, threshold: f64) -> Option<Taken> {
+        if let (true, is_usual) = self.judged(&Taken::default(), seen, threshold) {
+            return is_usual.then(Taken::default);
         }
+        let mut weighted = [0.0; PLACES];
+        self.spikes().for_each(|(place, spike)| weighted[place] = spike.weights.dot(seen));
         (1..=MOST).find_map(|count| {
-            let mut best = Best::default();
-            self.search(&weighted, count, &mut Vec::with_capacity(count), &mut best);
-            let spikes = || best.taken.iter().map(|&i| &self.spikes[i]).zip(&best.sizes);
-            let left = spikes().fold(*seen, |left, (spike, &size)| left - spike.reach * size);
-            let found = |(spike, &excess): (&Spike, &f64)| (spike.place, Found { excess, sigma: spike.sigma });
-            (is_quiet(&left, &best.taken) && self.describes(&left)).then(|| spikes().map(found).collect())
+            let mut best = Taken::default();
+            self.search(&weighted, count, Taken::default(), &mut best);
+            (self.judged(&best, seen, threshold) == (true, true)).then_some(best)
         })
     }
-}
-
-/// The spikes that explain most, of so many.
-#[derive(Default)]
-struct Best {
-    gain: f64,
-    taken: Vec<usize>,
-    sizes: Vector3<f64>,
 }
 
 /// The test of all channels of a unit together.
@@ -191,7 +201,7 @@ pub(super) struct Joint {
     rows: u32,
     taken: u32,
     refused: u32,
-    learnt: Option<Box<Learnt>>,
+    learnt: Box<Option<Learnt>>,
     /// Whether what was learnt has described another block, and sees more than the channels alone.
     trusted: bool,
 }
@@ -206,18 +216,25 @@ impl Joint {
             rows: 0,
             taken: 0,
             refused: 0,
-            learnt: None,
+            learnt: Box::new(None),
             trusted: false,
         }
     }
 
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        (*self.learnt, self.trusted) = (None, false);
+        self.interrupt();
+        self.begin_block();
+    }
+
     /// The spikes of the row that is judged, beyond `threshold` standard deviations; `None` where this cannot tell.
     pub fn spikes(&mut self, rows: &[[f64; CHANNELS]; ROWS], threshold: f64) -> Option<[Option<Found>; CHANNELS]> {
-        let learnt = self.learnt.as_ref()?;
+        let learnt = self.learnt.as_ref().as_ref()?;
         let mut found = [const { None }; CHANNELS];
-        if let Some(spikes) = learnt.explained(&differences(rows), threshold) {
-            for (place, spike) in spikes.into_iter().filter(|(place, _)| place.row == CENTRE) {
-                found[place.channel] = Some(spike);
+        if let Some(taken) = learnt.explained(&differences(rows), threshold) {
+            for (&place, &excess) in taken.places().iter().zip(&taken.sizes).filter(|(place, _)| **place < CHANNELS) {
+                found[place] = learnt.spikes[place].map(|spike| Found { excess, sigma: spike.sigma });
             }
         } else {
             self.refused += 1;
@@ -232,7 +249,7 @@ impl Joint {
         self.filled = if is_altered { 0 } else { ROWS.min(self.filled + 1) };
         self.rows += 1;
         let seen = differences(&self.judged);
-        if self.filled == ROWS && self.learnt.as_ref().is_none_or(|learnt| learnt.describes(&seen)) {
+        if self.filled == ROWS && self.learnt.as_ref().as_ref().is_none_or(|learnt| learnt.describes(&seen)) {
             self.sum.ger(1.0, &seen, &seen, 1.0);
             self.taken += 1;
         }
@@ -247,8 +264,8 @@ impl Joint {
     /// spike by itself.
     pub fn end_block(&mut self, alone: &[Option<f64>; CHANNELS]) {
         if self.taken * LITTLE < self.rows {
-            self.learnt = None;
-            self.forget_block();
+            *self.learnt = None;
+            self.begin_block();
         }
         if self.taken < LEAST {
             return;
@@ -256,13 +273,12 @@ impl Joint {
         let is_tried = self.learnt.is_some() && self.refused * REFUSED < self.rows;
         // the inverse of a covariance from so few windows is too large by this on average (Wishart)
         let covariance = *self.sum / (f64::from(self.taken) - SIZE as f64 - 1.0);
-        let learnt = Learnt::of(&covariance).map(Box::new);
-        self.trusted = is_tried && learnt.as_ref().is_some_and(|learnt| learnt.is_worth(alone));
-        self.learnt = learnt;
-        self.forget_block();
+        *self.learnt = Learnt::of(&covariance);
+        self.trusted = is_tried && self.learnt.as_ref().as_ref().is_some_and(|learnt| learnt.is_worth(alone));
+        self.begin_block();
     }
 
-    fn forget_block(&mut self) {
+    fn begin_block(&mut self) {
         self.sum.fill(0.0);
         (self.rows, self.taken, self.refused) = (0, 0, 0);
     }

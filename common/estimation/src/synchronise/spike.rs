@@ -147,7 +147,7 @@ impl SpikeTest {
             }
             if number <= last || hole_ns > self.told.bridge_ns || hole_ns <= -self.told.interval_ns {
                 self.roughness.iter_mut().for_each(Roughness::clear);
-                self.joint = Joint::new();
+                self.joint.clear();
                 (self.whole, self.found, self.watch) = (false, 0, 0);
             } else if number / self.block != last / self.block {
                 self.end_block();
@@ -168,7 +168,7 @@ impl SpikeTest {
             let alone = self.roughness.each_ref().map(|roughness| roughness.scale().map(|scale| scale.spike()));
             self.joint.end_block(&alone);
         } else {
-            self.joint = Joint::new();
+            self.joint.clear();
         }
     }
 
