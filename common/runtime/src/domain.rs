@@ -1,4 +1,5 @@
 use crate::TransportError;
+use crate::mender::Mender;
 use crate::owner::Owner;
 use iceoryx2::config::Config;
 use iceoryx2::prelude::{FileName, SemanticString};
@@ -20,12 +21,14 @@ const GRACE: Duration = Duration::from_secs(60);
 /// A transport of its own for each launch: what two launches do never meets, and what one leaves behind can be found and removed.
 ///
 /// Its files lie in `root` and, beginning with `prefix`, in `/dev/shm`. A domain made with [`Domain::create`] removes itself when
-/// it is dropped, so it must outlive the nodes opened in it.
+/// it is dropped, so it must outlive the nodes opened in it; while it lives, a thread mends what killed processes leave half made.
 #[derive(Debug)]
 pub struct Domain {
     root: PathBuf,
     prefix: String,
     owned: bool,
+    /// Of the domain's maker.
+    _mender: Option<Mender>,
 }
 
 /// A domain in use.
@@ -56,15 +59,21 @@ impl Domain {
             let root = base.join(&name);
             match DirBuilder::new().mode(0o700).create(&root) {
                 Ok(()) => {
-                    let domain = Self { root, prefix: prefix_of(&name), owned: true };
+                    let mut domain = Self::at(root, &name);
+                    domain.owned = true;
                     let file = domain.root.join(OWNER_FILE);
                     fs::write(&file, owner.to_text()).map_err(TransportError::file("write", &file))?;
+                    domain._mender = Some(Mender::start(domain.prefix.clone())?);
                     return Ok(domain);
                 }
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(TransportError::file("make", &root)(error)),
             }
         }
+    }
+
+    fn at(root: PathBuf, name: &str) -> Self {
+        Self { root, prefix: format!("{name}_"), owned: false, _mender: None }
     }
 
     /// Opens the domain of a living launcher, as a stage does.
@@ -79,7 +88,7 @@ impl Domain {
             return Err(refuse("its path is too long for the names of sockets"));
         }
         match owner_of(&root) {
-            Some(owner) if owner.lives() => Ok(Self { prefix: prefix_of(name), root: root.clone(), owned: false }),
+            Some(owner) if owner.lives() => Ok(Self::at(root.clone(), name)),
             Some(_) => Err(refuse("its owner does not run any more")),
             None => Err(refuse("it has no owner")),
         }
@@ -122,7 +131,7 @@ impl Domain {
     /// The first file that could not be removed; the others are removed all the same.
     pub fn remove(&self) -> Result<(), TransportError> {
         let mut first = Ok(());
-        for file in self.shared_memory() {
+        for file in shared_memory(&self.prefix) {
             first = first.and(tolerate(fs::remove_file(&file)).map_err(TransportError::file("remove", &file)));
         }
         // Last, for without it a sweep would not find the rest.
@@ -131,7 +140,7 @@ impl Domain {
 
     /// What still exists of the domain: its root and its files in shared memory.
     pub fn leftovers(&self) -> Vec<PathBuf> {
-        let mut paths = self.shared_memory();
+        let mut paths = shared_memory(&self.prefix);
         if self.root.exists() {
             paths.push(self.root.clone());
         }
@@ -141,17 +150,20 @@ impl Domain {
     /// Removes the domains whose owner does not run any more, and gives their roots.
     ///
     /// # Errors
-    /// If the folder of domains cannot be read or one of them cannot be removed.
+    /// If the folder of domains cannot be read, or the first domain that cannot be removed, as when stages of a dead launcher are just
+    /// leaving it; the others are removed all the same.
     pub fn sweep() -> Result<Vec<PathBuf>, TransportError> {
         let base = base()?;
-        let mut removed = Vec::new();
+        let (mut removed, mut first) = (Vec::new(), Ok(()));
         for entry in fs::read_dir(&base).map_err(TransportError::file("read", &base))?.flatten() {
             let root = entry.path();
             let Some(name) = name_of(&root).filter(|_| is_abandoned(&root)) else { continue };
-            Self { prefix: prefix_of(name), root: root.clone(), owned: false }.remove()?;
-            removed.push(root);
+            match Self::at(root.clone(), name).remove() {
+                Ok(()) => removed.push(root),
+                Err(error) => first = first.and(Err(error)),
+            }
         }
-        Ok(removed)
+        first.map(|()| removed)
     }
 
     /// The domains of this user whose launchers run now.
@@ -168,13 +180,6 @@ impl Domain {
         };
         Ok(entries.filter_map(|entry| running(entry.path())).collect())
     }
-
-    fn shared_memory(&self) -> Vec<PathBuf> {
-        let Ok(entries) = fs::read_dir(SHARED_MEMORY) else { return Vec::new() };
-        let ours =
-            |path: &PathBuf| path.file_name().is_some_and(|name| name.as_bytes().starts_with(self.prefix.as_bytes()));
-        entries.flatten().map(|entry| entry.path()).filter(ours).collect()
-    }
 }
 
 impl Drop for Domain {
@@ -186,16 +191,19 @@ impl Drop for Domain {
     }
 }
 
+/// The files in shared memory whose names begin with the prefix.
+pub(crate) fn shared_memory(prefix: &str) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(SHARED_MEMORY) else { return Vec::new() };
+    let ours = |path: &PathBuf| path.file_name().is_some_and(|name| name.as_bytes().starts_with(prefix.as_bytes()));
+    entries.flatten().map(|entry| entry.path()).filter(ours).collect()
+}
+
 /// `df` and eight hexadecimal digits: nothing else may ever become a prefix of files to be deleted.
 fn name_of(root: &Path) -> Option<&str> {
     let name = root.file_name()?.to_str()?;
     let digits = name.strip_prefix("df")?;
     let valid = digits.len() == 8 && digits.bytes().all(|c| c.is_ascii_digit() || (b'a'..=b'f').contains(&c));
     valid.then_some(name)
-}
-
-fn prefix_of(name: &str) -> String {
-    format!("{name}_")
 }
 
 fn owner_of(root: &Path) -> Option<Owner> {

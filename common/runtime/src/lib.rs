@@ -33,6 +33,7 @@ mod latency;
 mod launches;
 pub mod line;
 pub mod log;
+mod mender;
 mod node;
 mod owner;
 mod port;

@@ -5,6 +5,7 @@ use messages::topic::{self, Topic};
 use messages::{Header, ImuSample};
 use runtime::{Anchor, Domain, Node, Publisher, Sequence, Stop, Subscriber, Waiter, die_with_parent};
 use std::io::{BufRead, BufReader, Read};
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -113,6 +114,17 @@ fn child() {
                     }
                 }
             }
+        }
+        "stillborn reader" => {
+            let domain = Domain::open(&root).unwrap();
+            let node = Node::open(&domain, "stillborn reader").unwrap();
+            say("ready");
+            // the first file of over a kilobyte is the connection to the writer, and setting its size ends the process
+            let limit = libc::rlimit { rlim_cur: 1024, rlim_max: 1024 };
+            // SAFETY: the limit lives through the call.
+            assert_eq!(unsafe { libc::setrlimit(libc::RLIMIT_FSIZE, &limit) }, 0);
+            let _reader = Subscriber::open(&node, &imu()).unwrap();
+            panic!("it lives");
         }
         "parent" => {
             let mut orphan = Process::start("orphan", &root);
@@ -250,6 +262,37 @@ fn killed_readers_neither_stop_the_writer_nor_keep_their_places() {
         (0..3000).for_each(|_| send());
         assert!(start.elapsed() < LONG, "the dead reader blocks the writer");
     }
+}
+
+/// Its connection to the writer exists and has no size, for which the transport would wait for ever.
+#[test]
+fn a_reader_killed_in_the_middle_of_connecting_holds_nobody_up() {
+    let domain = Domain::create().unwrap();
+    let node = Node::open(&domain, "writer").unwrap();
+    let writer = Publisher::open(&node, &imu()).unwrap();
+    let mut stillborn = Process::start("stillborn reader", domain.root());
+    stillborn.hear();
+    let errors = stillborn.errors();
+    assert_eq!(stillborn.child.wait().unwrap().signal(), Some(libc::SIGXFSZ), "{errors}");
+    let (done, next) = std::sync::mpsc::channel();
+    let root = domain.root().to_owned();
+    std::thread::spawn(move || {
+        let domain = Domain::open(&root).unwrap();
+        let node = Node::open(&domain, "next reader").unwrap();
+        let reader = Subscriber::open(&node, &imu()).unwrap();
+        done.send("open").unwrap();
+        read(&reader, 5);
+        done.send("reading").unwrap();
+    });
+    assert_eq!(next.recv_timeout(LONG), Ok("open"), "the next reader hangs");
+    let deadline = Instant::now() + LONG;
+    let mut k = 0;
+    while next.try_recv() != Ok("reading") && Instant::now() < deadline {
+        writer.publish(&sample(1, k)).unwrap();
+        k += 1;
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert!(Instant::now() < deadline, "the next reader gets nothing");
 }
 
 #[test]

@@ -64,7 +64,9 @@ const DOMAINS: u32 = 8;
 /// The set cannot be started or kept up, or an output file cannot be written.
 pub fn run(configuration: &Configuration, options: &Options) -> Result<Report, LaunchError> {
     let stop = Stop::install()?;
-    Domain::sweep()?;
+    if let Err(error) = Domain::sweep() {
+        tracing::warn!(%error, "what an earlier launch has left is removed by a later one");
+    }
     let run_id = monotonic_ns() as u64;
     let (file, areas) = (configuration.path.display(), configuration.areas.len());
     tracing::info!(configuration = %file, areas, run_id, "a run begins");
