@@ -128,6 +128,22 @@ fn an_identifier_may_be_killed_at_its_start() {
     kill_at_start(&Run::recorded(10.0, 8.0, 1.0), "identify", &MOMENTS_MS);
 }
 
+#[test]
+fn a_launch_says_for_whom_it_waits() {
+    let run = Run::simulated(1.0);
+    let _alone = one_at_a_time();
+    let mut launch = run.start("waits");
+    let pid = launch.stage("identify", None);
+    send(pid, SIGSTOP);
+    launch.eventually("complaint", |launch| {
+        launch.errors().contains(r#"the source cannot start yet  waits_for="identify of area radar""#).then_some(())
+    });
+    send(pid, SIGCONT);
+    let ended = launch.end();
+    ended.well();
+    run.assert_complete(&run.rows(&ended.solutions("radar")));
+}
+
 /// The launcher sleeps while the source dies and the run's time goes by: the next source has nothing to send but the end.
 #[test]
 fn a_source_that_dies_before_its_end_marks_is_restarted_to_give_them() {

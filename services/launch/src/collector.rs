@@ -201,10 +201,9 @@ impl Collector {
         Ok(())
     }
 
-    /// Whether all of these stages are connected.
-    pub fn all_ready(&self, roles: impl Iterator<Item = Role>) -> bool {
-        let mut roles = roles;
-        roles.all(|role| self.health.get(&role).is_some_and(|counted| counted.seen))
+    /// Whether the stage is connected.
+    pub fn is_ready(&self, role: Role) -> bool {
+        self.health.get(&role).is_some_and(|counted| counted.seen)
     }
 
     /// Whether every fast stage that has spoken runs in the real-time class.

@@ -51,6 +51,8 @@ pub struct Options {
 const WATCH: Duration = Duration::from_millis(50);
 /// From the moment all stages are ready to the first sample, ns: the source has to start meanwhile.
 const RUN_UP_NS: i64 = 500_000_000;
+/// After so long the stages for which the source waits are named, ns.
+const SLOW_START_NS: i64 = 5_000_000_000;
 /// How long the stages may take to work off their queues once the source has ended or been told to, ns.
 const WORK_OFF_NS: i64 = 15_000_000_000;
 /// How long a stage may take for its last health message after the streams have ended, ns.
@@ -142,7 +144,7 @@ fn attend(
     let mut waiter = Waiter::new();
     let mut status = Status::new(configuration);
     set.start_workers()?;
-    let (mut until_ns, mut last_ns) = (None, None);
+    let (mut until_ns, mut last_ns, mut complain_ns) = (None, None, monotonic_ns() + SLOW_START_NS);
     loop {
         waiter.wait(&ports.wakes(), WATCH)?;
         collector.drain(&ports)?;
@@ -153,13 +155,20 @@ fn attend(
                 until_ns.get_or_insert(now_ns + WORK_OFF_NS);
             }
         }
-        if !set.has_source() && collector.all_ready(set.workers()) {
-            if configuration.run.scheduling == SchedulingChoice::Fifo && !collector.all_fifo() {
-                return Err(LaunchError::NoRealTime);
+        if !set.has_source() {
+            let late: Vec<&str> =
+                set.workers().filter(|(role, _)| !collector.is_ready(*role)).map(|(_, name)| name).collect();
+            if late.is_empty() {
+                if configuration.run.scheduling == SchedulingChoice::Fifo && !collector.all_fifo() {
+                    return Err(LaunchError::NoRealTime);
+                }
+                let resume = epoch_ns.is_some();
+                tracing::info!(real_time = collector.all_fifo(), resume, "all stages are ready: the source starts");
+                set.start_source(*epoch_ns.get_or_insert(now_ns + RUN_UP_NS), resume)?;
+            } else if now_ns > complain_ns {
+                tracing::warn!(waits_for = late.join(", "), "the source cannot start yet");
+                complain_ns = i64::MAX;
             }
-            let resume = epoch_ns.is_some();
-            tracing::info!(real_time = collector.all_fifo(), resume, "all stages are ready: the source starts");
-            set.start_source(*epoch_ns.get_or_insert(now_ns + RUN_UP_NS), resume)?;
         }
         if stop.requested() && until_ns.is_none() {
             tracing::info!("asked to stop: the streams end");

@@ -97,9 +97,10 @@ impl Set {
         set
     }
 
-    /// The stages that have to be ready before the source may start.
-    pub fn workers(&self) -> impl Iterator<Item = Role> {
-        self.members.iter().map(|member| member.role).filter(|role| *role != self.source)
+    /// The stages that have to be ready before the source may start, with their names.
+    pub fn workers(&self) -> impl Iterator<Item = (Role, &str)> {
+        let workers = self.members.iter().filter(|member| member.role != self.source);
+        workers.map(|member| (member.role, member.name.as_str()))
     }
 
     /// Starts all but the source.
