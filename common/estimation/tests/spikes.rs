@@ -7,6 +7,7 @@ use messages::{Flags, ImuPair, ImuSample};
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
+use std::f64::consts::TAU;
 
 /// White noise of a gyro (rad) and of an accelerometer (m/s) in a sample, whatever its interval.
 const GYRO: f64 = 3e-8;
@@ -267,6 +268,64 @@ fn a_step_of_one_gyro_is_not_chased() {
             let worst = (3 * LEARNT..19_990).map(left).fold(0.0, f64::max);
             assert!(worst < 150.0, "seed {seed}, axis {axis}: {worst}");
         }
+    }
+}
+
+/// Size of a spike that a channel shows by itself on [`lurching`] data, in deviations of the noise.
+const LARGE: f64 = 3e4;
+
+/// Turns whose rate steps by three thousand deviations of the noise, and an accelerometer that goes with one of them in a proportion that swings by a tenth
+/// within a minute: both together see a thousandth of what one sees, for a while.
+fn lurching(seed: u64) -> Vec<ImuSample> {
+    let mut samples = unit_samples(20 + seed, 20_000, T);
+    let mut rng = Pcg64Mcg::seed_from_u64(3000 + seed);
+    let mut rate = [0.0; 3];
+    for (k, sample) in samples.iter_mut().enumerate() {
+        for axis in 0..3 {
+            rate[axis] = 0.999 * rate[axis] + 3000.0 * GYRO * rng.sample::<f64, _>(StandardNormal);
+            sample.dtheta[axis] += rate[axis];
+        }
+        let swing = 1.0 + 0.1 * (TAU * k as f64 * unit::seconds(T) / 60.0).sin();
+        sample.dvel[1] += swing * ACCEL / GYRO * rate[0];
+    }
+    samples
+}
+
+/// The spikes end, and what was learnt among them is asked on. What it alters wrongly must not make the next sample look wrong.
+#[test]
+fn what_was_learnt_and_holds_no_more_brings_no_chase_about() {
+    const END: usize = 8000;
+    for seed in SEEDS {
+        let (main, mut sub) = (unit_samples(10 + seed, 20_000, T), lurching(seed));
+        let calm = sub[END..].to_vec();
+        strike(&mut sub, seed, 0.01, LARGE);
+        sub[END..].copy_from_slice(&calm);
+        let (raw, found) = (untested(&main, &sub), tested(&main, &sub));
+        for axis in 0..3 {
+            let altered = (END..19_990).scan(0.0, |sum, k| {
+                *sum += found[k].dtheta_s[axis] - raw[k].dtheta_s[axis];
+                Some(sum.abs() / GYRO)
+            });
+            let worst = altered.fold(0.0, f64::max);
+            assert!(worst < LARGE, "seed {seed}, axis {axis}: {worst}");
+        }
+    }
+}
+
+#[test]
+fn three_spikes_are_no_reason_to_ask_all_channels() {
+    const SPIKES: [usize; 3] = [5100, 5200, 5300];
+    for seed in SEEDS {
+        let (main, mut sub) = (unit_samples(10 + seed, 20_000, T), lurching(seed));
+        let expected = untested(&main, &sub);
+        SPIKES.into_iter().for_each(|k| sub[k].dtheta[1] += LARGE * GYRO);
+        let found = tested(&main, &sub);
+        let off = |k: &usize, axis: usize| {
+            let turn = (found[*k].dtheta_s[axis] - expected[*k].dtheta_s[axis]) / GYRO;
+            turn.abs().max((found[*k].dvel_s[axis] - expected[*k].dvel_s[axis]).abs() / ACCEL) > 1.0
+        };
+        let altered: Vec<usize> = (LEARNT..19_990).filter(|k| (0..3).any(|axis| off(k, axis))).collect();
+        assert_eq!(altered, SPIKES, "seed {seed}");
     }
 }
 

@@ -4,11 +4,12 @@
 //! differences over the last whole block, so that noise, flexure and swell set it by themselves. A spike leaves the line and returns
 //! to it. A step does not return: the deck's rate of bending steps in a slam, and must pass. An ordinary sample is
 //! handed on at once; one that leaves the line of its past waits for the two after it. Spikes too small to be told without them are
-//! found when it is too late, and then let every sample of the unit wait for a while, in which all channels are judged [together](super::joint) too.
+//! found when it is too late, and then let every sample of the unit wait for a while; of a unit that goes on spiking all channels are then judged
+//! [together](super::joint).
 //!
 //! Blocks begin at fixed sample numbers, so that a unit that is joined a few samples later is judged alike.
 
-use super::joint::Joint;
+use super::joint::{CHANNELS, Doubts, Joint};
 use super::roughness::{Roughness, Scale};
 use frames::unit;
 use messages::{Flags, ImuSample};
@@ -38,6 +39,8 @@ const BLOCK: (u64, u64) = (256, 512);
 /// So many spikes in a block let every sample wait, for so many blocks after the last such one.
 const MANY: u32 = 3;
 const WATCH: u32 = 12;
+/// So many such blocks in a row are no chance: three in a block are now and then, and slams show as two or three.
+const STEADY: u32 = 2;
 /// Differences below so much of a value are rounding.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -67,7 +70,8 @@ pub(super) struct Judged {
 #[derive(Debug)]
 pub(super) struct SpikeTest {
     told: Told,
-    rows: [[f64; 6]; ROWS],
+    rows: [[f64; CHANNELS]; ROWS],
+    doubts: Doubts,
     /// How many of the rows, from the newest on, follow each other without a hole.
     filled: usize,
     waiting: VecDeque<Judged>,
@@ -78,8 +82,12 @@ pub(super) struct SpikeTest {
     last: Option<(u64, i64)>,
     /// Whether the block began while the unit was there.
     whole: bool,
+    /// Rows of this block in which a channel by itself shows a spike, and how many blocks in a row had many.
     found: u32,
+    many: u32,
     watch: u32,
+    /// Whether the unit has spiked for long enough that all channels are asked together while it is watched.
+    spikes: bool,
 }
 
 impl SpikeTest {
@@ -87,7 +95,8 @@ impl SpikeTest {
         let block = ((BLOCK_S / unit::seconds(told.interval_ns)).round() as u64).clamp(BLOCK.0, BLOCK.1);
         Self {
             told,
-            rows: [[0.0; 6]; ROWS],
+            rows: [[0.0; CHANNELS]; ROWS],
+            doubts: [[false; CHANNELS]; ROWS],
             filled: 0,
             waiting: VecDeque::with_capacity(ROWS),
             roughness: std::array::from_fn(|_| Roughness::new(block as usize)),
@@ -96,7 +105,9 @@ impl SpikeTest {
             last: None,
             whole: false,
             found: 0,
+            many: 0,
             watch: 0,
+            spikes: false,
         }
     }
 
@@ -115,6 +126,8 @@ impl SpikeTest {
         }
         self.rows.copy_within(1.., 0);
         self.rows[ROWS - 1] = values;
+        self.doubts.copy_within(1.., 0);
+        self.doubts[ROWS - 1] = [false; CHANNELS];
         self.filled = ROWS.min(self.filled + 1);
         if self.filled > 2 * AHEAD {
             self.judge();
@@ -148,7 +161,7 @@ impl SpikeTest {
             if number <= last || hole_ns > self.told.bridge_ns || hole_ns <= -self.told.interval_ns {
                 self.roughness.iter_mut().for_each(Roughness::clear);
                 self.joint.clear();
-                (self.whole, self.found, self.watch) = (false, 0, 0);
+                (self.whole, self.found, self.many, self.watch, self.spikes) = (false, 0, 0, 0, false);
             } else if number / self.block != last / self.block {
                 self.end_block();
             }
@@ -162,7 +175,10 @@ impl SpikeTest {
         let least = if self.whole { self.block as usize / 2 } else { usize::MAX };
         self.whole = true;
         self.roughness.iter_mut().for_each(|roughness| roughness.end_block(least));
-        self.watch = if self.found >= MANY { WATCH } else { self.watch.saturating_sub(1) };
+        let is_many = self.found >= MANY;
+        self.many = if is_many { self.many + 1 } else { 0 };
+        self.watch = if is_many { WATCH } else { self.watch.saturating_sub(1) };
+        self.spikes = self.watch > 0 && (self.spikes || self.many >= STEADY);
         self.found = 0;
         if self.watch > 0 {
             let alone = self.roughness.each_ref().map(|roughness| roughness.scale().map(|scale| scale.spike()));
@@ -198,18 +214,22 @@ impl SpikeTest {
         let mut excess = [0.0; 6];
         let (mut flags, mut left) = (Flags::empty(), 0.0f64);
         let waits = self.waiting.len() > AHEAD;
-        let found = self.together().unwrap_or_else(|| std::array::from_fn(|channel| self.alone(channel)));
+        let alone: [Option<Found>; CHANNELS] = std::array::from_fn(|channel| self.alone(channel));
+        // what is found together only must not bear itself out
+        let is_seen = alone.iter().any(Option::is_some);
+        let found = self.together().unwrap_or(alone);
         for (channel, found) in found.into_iter().enumerate() {
             let taps = self.taps(channel);
             self.roughness[channel].add(taps.second(), taps.fourth(), self.whole);
             let Some(found) = found else { continue };
             excess[channel] = found.excess;
+            self.doubts[CENTRE][channel] = true;
             flags |= Flags::SPIKE;
             if channel < 3 {
                 left = left.max(if waits { found.sigma } else { found.excess.abs() });
             }
         }
-        if !flags.is_empty() {
+        if is_seen {
             self.found += 1;
             self.watch = if self.found >= MANY { WATCH } else { self.watch };
         }
@@ -232,8 +252,9 @@ impl SpikeTest {
 
     /// The spikes of the sample that is judged by all channels together; `None` where they cannot tell.
     fn together(&mut self) -> Option<[Option<Found>; 6]> {
-        let is_seen = self.watch > 0 && self.filled == ROWS;
-        is_seen.then(|| self.joint.spikes(&self.rows, self.told.threshold)).flatten()
+        let is_whole = self.watch > 0 && self.filled == ROWS;
+        let found = is_whole.then(|| self.joint.spikes(&self.rows, &self.doubts, self.told.threshold)).flatten();
+        found.filter(|_| self.spikes)
     }
 
     /// The spike of a channel of the sample that is judged by itself.
